@@ -1,0 +1,35 @@
+# gelenk_test(<name> SOURCES <file>... LIBS <target>...
+#             [LABELS <label>...] [TIMEOUT <seconds>] [DEFINES <macro>...])
+#
+# One GoogleTest executable, one ctest entry of the same name. Without LABELS it
+# is a `unit` test; TIMEOUT is 120 s unless told. Headers of the tree are
+# included from its root ("tests/testing/random_pose.h").
+#
+# Labels in use: unit, integration, architecture, concurrent (also run under
+# ThreadSanitizer), core (also run in CI under AddressSanitizer), soak (only
+# with `./dev soak`).
+find_package(GTest CONFIG REQUIRED)
+
+function(gelenk_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT"
+                        "SOURCES;LIBS;LABELS;DEFINES")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "gelenk_test(${name}): ${arg_UNPARSED_ARGUMENTS}?")
+  endif()
+  if(NOT arg_LABELS)
+    set(arg_LABELS unit)
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 120)
+  endif()
+
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gtest_main
+                                        GTest::gmock)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_definitions(${name} PRIVATE ${arg_DEFINES})
+  gelenk_warnings(${name})
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}"
+                                          TIMEOUT ${arg_TIMEOUT})
+endfunction()
