@@ -1,0 +1,95 @@
+#include "gelenk/math/rotation.h"
+
+#include <cmath>
+
+namespace gelenk {
+namespace {
+
+// Below this the ratio sin(x)/x is 1 to the last digit.
+constexpr double kTinyAngle = 1e-8;
+
+Eigen::Vector3d AnyPerpendicular(const Eigen::Vector3d& axis) {
+  return axis.unitOrthogonal();
+}
+
+}  // namespace
+
+bool NormalizeNearUnit(double* xyzw) {
+  Eigen::Map<Eigen::Vector4d> coefficients(xyzw);
+  const double norm = coefficients.norm();
+  if (!(std::abs(norm - 1) <= kUnitTolerance)) return false;
+  if (std::abs(norm - 1) > kUnitExact) coefficients /= norm;
+  return true;
+}
+
+Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  const double half = 0.5 * angle;
+  const double scale = angle < kTinyAngle ? 0.5 : std::sin(half) / angle;
+  Eigen::Quaterniond q(std::cos(half), scale * rotation_vector.x(),
+                       scale * rotation_vector.y(),
+                       scale * rotation_vector.z());
+  q.normalize();
+  return q;
+}
+
+Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation) {
+  const Eigen::Vector3d v =
+      rotation.w() < 0 ? Eigen::Vector3d(-rotation.vec()) : rotation.vec();
+  const double w = std::abs(rotation.w());
+  const double sine = v.norm();
+  if (sine < kTinyAngle) return 2 * v;
+  return (2 * std::atan2(sine, w) / sine) * v;
+}
+
+double AngleBetween(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
+  const Eigen::Quaterniond difference = a.conjugate() * b;
+  return 2 * std::atan2(difference.vec().norm(), std::abs(difference.w()));
+}
+
+Eigen::Quaterniond InHemisphereOf(const Eigen::Quaterniond& reference,
+                                  const Eigen::Quaterniond& q) {
+  if (reference.dot(q) >= 0) return q;
+  return Eigen::Quaterniond(-q.w(), -q.x(), -q.y(), -q.z());
+}
+
+Eigen::Quaterniond ShortestRotation(const Eigen::Vector3d& from,
+                                    const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
+SwingTwist DecomposeSwingTwist(const Eigen::Quaterniond& rotation,
+                               const Eigen::Vector3d& axis) {
+  SwingTwist parts;
+  const double along = rotation.vec().dot(axis);
+  const Eigen::Vector3d across = rotation.vec() - along * axis;
+  const double swing_sine = across.norm();
+  const double swing_cosine = std::hypot(along, rotation.w());
+  parts.swing_rad = 2 * std::atan2(swing_sine, swing_cosine);
+  if (swing_cosine < 1e-12) {
+    parts.swing_axis = across / swing_sine;
+    return parts;
+  }
+  const double sign = rotation.w() < 0 ? -1 : 1;
+  parts.twist_rad = 2 * std::atan2(sign * along, sign * rotation.w());
+  if (swing_sine < 1e-12) {
+    parts.swing_axis = AnyPerpendicular(axis);
+    return parts;
+  }
+  const Eigen::Quaterniond twist(Eigen::AngleAxisd(parts.twist_rad, axis));
+  const Eigen::Quaterniond swing = rotation * twist.conjugate();
+  parts.swing_axis = swing.vec();
+  if (swing.w() < 0) parts.swing_axis = -parts.swing_axis;
+  parts.swing_axis -= parts.swing_axis.dot(axis) * axis;
+  parts.swing_axis.normalize();
+  return parts;
+}
+
+Eigen::Quaterniond ComposeSwingTwist(const SwingTwist& parts,
+                                     const Eigen::Vector3d& axis) {
+  return Eigen::Quaterniond(
+             Eigen::AngleAxisd(parts.swing_rad, parts.swing_axis)) *
+         Eigen::Quaterniond(Eigen::AngleAxisd(parts.twist_rad, axis));
+}
+
+}  // namespace gelenk

@@ -1,0 +1,182 @@
+#include "gelenk/skeleton/pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "gelenk/base/violations.h"
+#include "gelenk/math/rotation.h"
+
+namespace gelenk {
+namespace {
+
+// Where the quaternion of a joint starts within its numbers; -1 without one.
+int QuaternionStart(JointType type) {
+  if (type == JointType::kSpherical) return 0;
+  return type == JointType::kFree ? 3 : -1;
+}
+
+// Calls `visit(joint, q offset, v offset)` for each joint that owns numbers.
+template <typename Visit>
+void ForEachMoving(const Skeleton& skeleton, Visit visit) {
+  for (int i = 0; i < skeleton.joint_count(); ++i) {
+    const JointSpan& span = skeleton.span(i);
+    if (span.position_offset < 0) continue;
+    visit(i, span.position_offset, span.velocity_offset);
+  }
+}
+
+void CheckQuaternion(int at, VectorView positions, Violations& violations) {
+  if (!positions.segment<4>(at).allFinite()) return;  // already reported
+  if (NormalizeNearUnit(positions.data() + at)) return;
+  violations.Add(absl::StrCat("positions[", at, "]"),
+                 absl::StrFormat("want a unit quaternion, got (%g, %g, %g, %g)",
+                                 positions[at], positions[at + 1],
+                                 positions[at + 2], positions[at + 3]));
+}
+
+// The box limits of `joint`; null when it has none.
+const JointLimits* BoxOf(const Joint& joint) {
+  return joint.limits.lower.empty() ? nullptr : &joint.limits;
+}
+
+}  // namespace
+
+Eigen::VectorXd NeutralPositions(const Skeleton& skeleton) {
+  Eigen::VectorXd positions = Eigen::VectorXd::Zero(skeleton.position_count());
+  ForEachMoving(skeleton, [&](int i, int q, int) {
+    const int start = QuaternionStart(skeleton.joint(i).type);
+    if (start >= 0) positions[q + start + 3] = 1;
+  });
+  return positions;
+}
+
+absl::Status CheckPositions(const Skeleton& skeleton, VectorView positions) {
+  Violations violations;
+  if (positions.size() != skeleton.position_count()) {
+    violations.Add("positions", absl::StrFormat("want %d numbers, got %d",
+                                                skeleton.position_count(),
+                                                positions.size()));
+    return violations.ToStatus();
+  }
+  for (int i = 0; i < positions.size(); ++i) {
+    if (std::isfinite(positions[i])) continue;
+    violations.Add(absl::StrCat("positions[", i, "]"),
+                   absl::StrCat("want a finite number, got ", positions[i]));
+  }
+  ForEachMoving(skeleton, [&](int i, int q, int) {
+    const int start = QuaternionStart(skeleton.joint(i).type);
+    if (start >= 0) CheckQuaternion(q + start, positions, violations);
+  });
+  return violations.ToStatus();
+}
+
+void Integrate(const Skeleton& skeleton, const ConstVectorView& positions,
+               const ConstVectorView& velocity, VectorView result) {
+  ForEachMoving(skeleton, [&](int i, int q, int v) {
+    const JointType type = skeleton.joint(i).type;
+    const int start = QuaternionStart(type);
+    const int scalars = start < 0 ? PositionCount(type) : start;
+    for (int k = 0; k < scalars; ++k) {
+      result[q + k] = positions[q + k] + velocity[v + k];
+    }
+    if (start < 0) return;
+    const Eigen::Quaterniond moved =
+        (QuaternionXyzw(positions.data() + q + start) *
+         ExpRotation(velocity.segment<3>(v + start)))
+            .normalized();
+    StoreXyzw(moved, result.data() + q + start);
+  });
+}
+
+void Difference(const Skeleton& skeleton, const ConstVectorView& from,
+                const ConstVectorView& to, VectorView result) {
+  ForEachMoving(skeleton, [&](int i, int q, int v) {
+    const JointType type = skeleton.joint(i).type;
+    const int start = QuaternionStart(type);
+    const int scalars = start < 0 ? PositionCount(type) : start;
+    for (int k = 0; k < scalars; ++k) result[v + k] = to[q + k] - from[q + k];
+    if (start < 0) return;
+    result.segment<3>(v + start) =
+        LogRotation(QuaternionXyzw(from.data() + q + start).conjugate() *
+                    QuaternionXyzw(to.data() + q + start));
+  });
+}
+
+double ClampToLimits(const Skeleton& skeleton, VectorView positions) {
+  double largest = 0;
+  ForEachMoving(skeleton, [&](int i, int q, int) {
+    const Joint& joint = skeleton.joint(i);
+    if (const JointLimits* box = BoxOf(joint)) {
+      for (size_t k = 0; k < box->lower.size(); ++k) {
+        double& value = positions[q + k];
+        const double inside = std::clamp(value, box->lower[k], box->upper[k]);
+        largest = std::max(largest, std::abs(value - inside));
+        value = inside;
+      }
+    }
+    const int start = QuaternionStart(joint.type);
+    if (start < 0 || !joint.limits.HasRotationLimits()) return;
+    const Eigen::Quaterniond rotation =
+        QuaternionXyzw(positions.data() + q + start);
+    const double excess =
+        RotationLimitExcess(joint.limits, joint.axis, rotation);
+    if (excess <= 0) return;
+    largest = std::max(largest, excess);
+    StoreXyzw(ClampRotation(joint.limits, joint.axis, rotation),
+              positions.data() + q + start);
+  });
+  return largest;
+}
+
+double LimitExcess(const Skeleton& skeleton, const ConstVectorView& positions,
+                   int* joint) {
+  double largest = 0;
+  int worst = -1;
+  const auto note = [&](int i, double excess) {
+    if (excess <= largest) return;
+    largest = excess;
+    worst = i;
+  };
+  ForEachMoving(skeleton, [&](int i, int q, int) {
+    const Joint& moving = skeleton.joint(i);
+    if (const JointLimits* box = BoxOf(moving)) {
+      for (size_t k = 0; k < box->lower.size(); ++k) {
+        note(i, box->lower[k] - positions[q + k]);
+        note(i, positions[q + k] - box->upper[k]);
+      }
+    }
+    const int start = QuaternionStart(moving.type);
+    if (start < 0) return;
+    note(i, RotationLimitExcess(moving.limits, moving.axis,
+                                QuaternionXyzw(positions.data() + q + start)));
+  });
+  if (joint != nullptr) *joint = worst;
+  return largest;
+}
+
+double ScalarPosition(const Skeleton& skeleton,
+                      const ConstVectorView& positions, int joint) {
+  const JointSpan& span = skeleton.span(joint);
+  if (span.mimicked < 0) return positions[span.position_offset];
+  const Mimic& mimic = *skeleton.joint(joint).mimic;
+  return mimic.multiplier *
+             positions[skeleton.span(span.mimicked).position_offset] +
+         mimic.offset;
+}
+
+void AlignHemispheres(const Skeleton& skeleton,
+                      const ConstVectorView& reference, VectorView positions) {
+  ForEachMoving(skeleton, [&](int i, int q, int) {
+    const int start = QuaternionStart(skeleton.joint(i).type);
+    if (start < 0) return;
+    const int at = q + start;
+    if (reference.segment<4>(at).dot(positions.segment<4>(at)) < 0) {
+      positions.segment<4>(at) *= -1;
+    }
+  });
+}
+
+}  // namespace gelenk
