@@ -6,8 +6,7 @@
 # included from its root ("tests/testing/random_pose.h").
 #
 # Labels in use: unit, integration, architecture, concurrent (also run under
-# ThreadSanitizer), core (also run in CI under AddressSanitizer), soak (only
-# with `./dev soak`).
+# ThreadSanitizer), soak (only with `./dev soak`).
 find_package(GTest CONFIG REQUIRED)
 
 function(gelenk_test name)

@@ -1,0 +1,44 @@
+# ./dev lint [part]...: reports, changes nothing. Parts: format, buf, shell,
+# tidy; all of them without an argument. `tidy` reads every .cc outside tests/
+# with its headers; a file that has not changed since it was found clean is not
+# read again.
+source scripts/dev/sources.sh
+
+lint_format() {
+  need_command "lint" clang-format clang-format
+  cpp_sources | xargs clang-format --dry-run -Werror
+}
+
+lint_buf() {
+  need_buf || return 1
+  "$BUF" lint && "$BUF" format --diff --exit-code
+}
+
+lint_shell() {
+  need_command "lint" shellcheck shellcheck
+  shellcheck --shell=bash --external-sources --source-path=SCRIPTDIR/../.. \
+    dev .ci/run scripts/dev/*.sh
+}
+
+lint_tidy() {
+  need_command "lint" clang-tidy clang-tidy
+  configure release
+  # The generated headers have to be there; the rest need not be built.
+  build release gelenk_proto
+  mkdir -p build/tidy
+  local settings
+  settings=$({ cat .clang-tidy; cpp_sources | grep '\.h$' | xargs cat; } |
+    sha256sum)
+  cpp_sources | grep '\.cc$' | grep -v '^tests/' |
+    xargs -P "$(job_count)" -n 1 bash scripts/dev/tidy_file.sh "$settings"
+}
+
+parts=("$@")
+[ $# -gt 0 ] || parts=(format buf shell tidy)
+failed=()
+for part in "${parts[@]}"; do
+  say "lint: $part"
+  "lint_$part" || failed+=("$part")
+done
+[ ${#failed[@]} = 0 ] || die "lint found faults: ${failed[*]}"
+say "lint: clean"
