@@ -1,0 +1,78 @@
+// Goals on one skeleton, ready to be solved: what a session keeps warm.
+//
+// Values in; the pose stays with the caller. Not thread-safe.
+#ifndef GELENK_IK_IK_PROBLEM_H_
+#define GELENK_IK_IK_PROBLEM_H_
+
+#include <memory>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+#include "gelenk/ik/goal.h"
+#include "gelenk/ik/sparse_tree.h"
+#include "gelenk/math/rigid_transform.h"
+#include "gelenk/skeleton/skeleton.h"
+
+namespace gelenk {
+
+// A body with trackers everywhere has about 20 goals.
+inline constexpr int kMaxGoals = 256;
+
+class IkProblem {
+ public:
+  // INVALID_ARGUMENT listing every bad goal: malformed (see CheckAndNormalize),
+  // unknown effector, duplicate id, too many. No goals is fine: solving leaves
+  // the pose as it is.
+  static absl::StatusOr<IkProblem> Create(
+      std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals);
+
+  IkProblem(IkProblem&&) = default;
+  IkProblem& operator=(IkProblem&&) = default;
+
+  const Skeleton& skeleton() const { return *skeleton_; }
+  const std::shared_ptr<const Skeleton>& shared_skeleton() const {
+    return skeleton_;
+  }
+  absl::Span<const Goal> goals() const { return goals_; }
+
+  // INVALID_ARGUMENT when there is no such goal, `target` does not fit its kind
+  // or is malformed. Normalises near-unit quaternions in `target`.
+  absl::Status CheckTarget(int goal_index, GoalTarget& target) const;
+
+  // `target` must have passed CheckTarget. Allocates nothing.
+  void SetTarget(int goal_index, const GoalTarget& target);
+
+  // Finite and >= 0; INVALID_ARGUMENT otherwise.
+  static absl::Status CheckWeight(double weight);
+  void SetWeight(int goal_index, double weight);
+
+  const RigidTransform& world_from_skeleton() const {
+    return world_from_skeleton_;
+  }
+  void SetWorldFromSkeleton(const RigidTransform& world_from_skeleton) {
+    world_from_skeleton_ = world_from_skeleton;
+  }
+
+  // For solvers.
+  const SparseTree& tree() const { return tree_; }
+  absl::Span<const kernel::TaskTarget> targets() const { return targets_; }
+
+  size_t ByteSize() const;
+
+ private:
+  IkProblem(std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
+            absl::Span<const EffectorTask> tasks);
+  void Refresh(int goal_index);
+
+  std::shared_ptr<const Skeleton> skeleton_;
+  std::vector<Goal> goals_;
+  SparseTree tree_;
+  std::vector<kernel::TaskTarget> targets_;
+  RigidTransform world_from_skeleton_;
+};
+
+}  // namespace gelenk
+
+#endif  // GELENK_IK_IK_PROBLEM_H_

@@ -1,0 +1,218 @@
+#include "gelenk/ik/levenberg_marquardt_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "gelenk/ik/kernel/rotation_bounds.h"
+#include "gelenk/ik/solve_diagnosis.h"
+#include "gelenk/ik/start_sampler.h"
+#include "gelenk/math/rotation.h"
+
+namespace gelenk {
+namespace {
+
+// A coordinate this near to its bound is on it.
+constexpr double kOnBound = 1e-9;
+
+kernel::AttemptFunction AttemptFor(InstructionSet level) {
+#ifdef GELENK_X86_LEVELS
+  if (level == InstructionSet::kAvx2) return kernel::avx2::Run;
+  if (level == InstructionSet::kAvx512) return kernel::avx512::Run;
+#endif
+  return kernel::baseline::Run;
+}
+
+kernel::Settings SettingsFor(const IkProblem& problem,
+                             const SolverOptions& options) {
+  kernel::Settings settings = {};
+  const RigidTransform& base = problem.world_from_skeleton();
+  const Eigen::Matrix3d rotation = base.rotation.toRotationMatrix();
+  for (int i = 0; i < 9; ++i) {
+    settings.base_rotation[i] = rotation(i / 3, i % 3);
+  }
+  for (int i = 0; i < 3; ++i)
+    settings.base_translation[i] = base.translation[i];
+  const double chord =
+      2 * std::sin(0.5 * std::min(options.rotation_tolerance_rad, M_PI));
+  settings.position_tolerance2 =
+      options.position_tolerance_m * options.position_tolerance_m;
+  settings.rotation_tolerance2 = chord * chord;
+  settings.max_iterations = options.max_iterations;
+  return settings;
+}
+
+SolveOutcome OutcomeOf(const kernel::Attempt& attempt) {
+  switch (attempt.end) {
+    case kernel::AttemptEnd::kConverged:
+      return SolveOutcome::kConverged;
+    case kernel::AttemptEnd::kStationary:
+      return attempt.pushed_at_limit ? SolveOutcome::kStalledAtLimits
+                                     : SolveOutcome::kUnreachable;
+    default:
+      return SolveOutcome::kIterationLimit;
+  }
+}
+
+// Cuts aligned pieces off one block of memory; first without memory, to count.
+class Carver {
+ public:
+  explicit Carver(double* memory) : memory_(memory) {}
+
+  double* Doubles(int count) {
+    double* piece = memory_ == nullptr ? nullptr : memory_ + used_;
+    used_ += kernel::PaddedRow(count);
+    return piece;
+  }
+  uint8_t* Bytes(int count) {
+    return reinterpret_cast<uint8_t*>(
+        Doubles((count + sizeof(double) - 1) / sizeof(double)));
+  }
+  size_t used() const { return used_; }
+
+ private:
+  double* memory_;
+  size_t used_ = 0;
+};
+
+kernel::Workspace Carve(const kernel::TreeLayout& tree, Carver& carver) {
+  kernel::Workspace w = {};
+  w.node_rotation = carver.Doubles(9 * tree.node_count);
+  w.node_translation = carver.Doubles(3 * tree.node_count);
+  w.axes = carver.Doubles(3 * tree.axis_count);
+  w.body_bases = carver.Doubles(9 * tree.node_count);
+  w.touched = carver.Bytes(tree.node_count);
+  w.jacobian = carver.Doubles(tree.j_size);
+  w.residuals = carver.Doubles(6 * tree.task_count);
+  w.effectors = carver.Doubles(3 * tree.task_count);
+  w.h = carver.Doubles(tree.h_size);
+  w.gradient = carver.Doubles(tree.column_count);
+  w.step = carver.Doubles(tree.column_count);
+  w.blocked = carver.Bytes(tree.column_count);
+  w.best_positions = carver.Doubles(tree.position_count);
+  w.position_errors2 = carver.Doubles(tree.task_count);
+  w.rotation_errors2 = carver.Doubles(tree.task_count);
+  return w;
+}
+
+bool IsOnLimit(const Skeleton& skeleton, int j,
+               const ConstVectorView& positions) {
+  const Joint& joint = skeleton.joint(j);
+  const JointLimits& limits = joint.limits;
+  const int q = skeleton.span(j).position_offset;
+  if (q < 0) return false;
+  for (size_t k = 0; k < limits.lower.size(); ++k) {
+    if (positions[q + k] <= limits.lower[k] + kOnBound ||
+        positions[q + k] >= limits.upper[k] - kOnBound) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+LevenbergMarquardtSolver::LevenbergMarquardtSolver(InstructionSet level)
+    : level_(level), attempt_(AttemptFor(level)) {}
+
+void LevenbergMarquardtSolver::Reserve(const kernel::TreeLayout& tree,
+                                       int position_count) {
+  Carver count(nullptr);
+  Carve(tree, count);
+  const size_t wanted = count.used() + kernel::kRowAlignment;
+  if (memory_.size() < wanted) memory_.resize(wanted);
+  // Whole cache lines: rows of J and H start on vector boundaries.
+  const uintptr_t line = sizeof(double) * kernel::kRowAlignment;
+  const uintptr_t first = reinterpret_cast<uintptr_t>(memory_.data());
+  const uintptr_t aligned = (first + line - 1) / line * line;
+  Carver carver(reinterpret_cast<double*>(aligned));
+  workspace_ = Carve(tree, carver);
+  // The padding of J's rows is read, never written.
+  std::fill(workspace_.jacobian,
+            workspace_.jacobian + kernel::PaddedRow(tree.j_size), 0.0);
+  if (start_.size() != position_count) start_.resize(position_count);
+}
+
+void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
+                                     const SolverOptions& options,
+                                     SolveStart start, VectorView positions,
+                                     SolveReport& report) {
+  const kernel::TreeLayout tree = problem.tree().Layout();
+  const Skeleton& skeleton = problem.skeleton();
+  Reserve(tree, skeleton.position_count());
+  start_ = positions;
+  ClampToLimits(skeleton, positions);
+
+  kernel::Settings settings = SettingsFor(problem, options);
+  const int budget = RestartBudget(options, start);
+  settings.impatient = budget > 0;
+  kernel::Attempt attempt = attempt_(tree, problem.targets().data(), settings,
+                                     workspace_, positions.data());
+  report.iteration_count = attempt.iterations;
+  report.restart_count = 0;
+  if (attempt.end != kernel::AttemptEnd::kConverged && budget > 0) {
+    StartSampler sampler(options.restart_seed);
+    best_ = positions;
+    double best_energy = attempt.energy;
+    while (attempt.end != kernel::AttemptEnd::kConverged &&
+           report.restart_count < budget) {
+      ++report.restart_count;
+      sampler.Sample(skeleton, start_, positions);
+      attempt = attempt_(tree, problem.targets().data(), settings, workspace_,
+                         positions.data());
+      report.iteration_count += attempt.iterations;
+      if (attempt.energy < best_energy) {
+        best_energy = attempt.energy;
+        best_ = positions;
+      }
+    }
+    if (attempt.end != kernel::AttemptEnd::kConverged) {
+      // Nothing reached: finish the best attempt with patience.
+      positions = best_;
+      settings.impatient = false;
+      attempt = attempt_(tree, problem.targets().data(), settings, workspace_,
+                         positions.data());
+      report.iteration_count += attempt.iterations;
+    }
+    AlignHemispheres(skeleton, start_, positions);
+  }
+  Report(problem, options, tree, attempt, positions, report);
+}
+
+void LevenbergMarquardtSolver::Report(const IkProblem& problem,
+                                      const SolverOptions& options,
+                                      const kernel::TreeLayout& tree,
+                                      const kernel::Attempt& attempt,
+                                      const ConstVectorView& positions,
+                                      SolveReport& report) {
+  report.outcome = OutcomeOf(attempt);
+  report.position_errors_m.resize(tree.task_count);
+  report.rotation_errors_rad.resize(tree.task_count);
+  for (int t = 0; t < tree.task_count; ++t) {
+    report.position_errors_m[t] = std::sqrt(workspace_.position_errors2[t]);
+    const double half_chord = 0.5 * std::sqrt(workspace_.rotation_errors2[t]);
+    report.rotation_errors_rad[t] = 2 * std::asin(std::min(half_chord, 1.0));
+  }
+  report.limited_joints.clear();
+  report.change = 0;
+  if (options.detail == ReportDetail::kBrief) return;
+
+  const Skeleton& skeleton = problem.skeleton();
+  for (int n = 0; n < tree.node_count; ++n) {
+    const int joint = problem.tree().joint_of(n);
+    const kernel::Node& node = tree.nodes[n];
+    const bool turns = node.type == kernel::NodeType::kSpherical ||
+                       node.type == kernel::NodeType::kFree;
+    // `touched` is that of the last forward pass, which was at the result.
+    if ((turns && workspace_.touched[n] != 0) ||
+        IsOnLimit(skeleton, joint, positions)) {
+      report.limited_joints.push_back(joint);
+    }
+  }
+  report.change = WeightedChange(problem, start_, positions, change_);
+  if (options.detail == ReportDetail::kDiagnosis) {
+    Diagnose(problem, positions, report);
+  }
+}
+
+}  // namespace gelenk

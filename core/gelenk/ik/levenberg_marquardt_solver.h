@@ -1,0 +1,66 @@
+// The default inverse kinematics: damped least squares on the manifold of
+// poses, with limits inside the step.
+//
+// Each iteration linearises all goals, freezes the coordinates that sit at a
+// bound and are pushed outwards, and takes the Levenberg-Marquardt step
+//   (J^T J + lambda S) dq = J^T e,  lambda = c E + floor,
+// S the joints' stiffness, E half the weighted squared error (Sugihara,
+// "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt
+// method", 2011). The normal matrix is factorised on the tree, leaf first,
+// without fill-in. A cold start that gets nowhere is given up early and tried
+// from another start.
+//
+// Deterministic: the answer depends on the problem, the options, the start and
+// the instruction set, on nothing else. Allocates nothing once it has seen a
+// problem of that size. Not thread-safe: one solver per thread; it holds the
+// working memory, so that problems need not.
+#ifndef GELENK_IK_LEVENBERG_MARQUARDT_SOLVER_H_
+#define GELENK_IK_LEVENBERG_MARQUARDT_SOLVER_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "gelenk/ik/ik_problem.h"
+#include "gelenk/ik/instruction_set.h"
+#include "gelenk/ik/kernel/tree_layout.h"
+#include "gelenk/ik/solve_report.h"
+#include "gelenk/ik/solver_options.h"
+#include "gelenk/skeleton/pose.h"
+
+namespace gelenk {
+
+class LevenbergMarquardtSolver {
+ public:
+  // `level` must be supported; see SupportedInstructionSets.
+  explicit LevenbergMarquardtSolver(
+      InstructionSet level = BestInstructionSet());
+
+  // Moves `positions` (size position_count, checked) from the start to the
+  // solution. A start outside its limits is first moved to the nearest pose
+  // inside. On any outcome but kConverged the result is the closest pose found.
+  // Joints that move no goal stay where they are. Quaternions stay in the
+  // hemisphere of the start. `options` must have passed CheckSolverOptions.
+  void Solve(const IkProblem& problem, const SolverOptions& options,
+             SolveStart start, VectorView positions, SolveReport& report);
+
+  InstructionSet instruction_set() const { return level_; }
+
+ private:
+  void Reserve(const kernel::TreeLayout& tree, int position_count);
+  void Report(const IkProblem& problem, const SolverOptions& options,
+              const kernel::TreeLayout& tree, const kernel::Attempt& attempt,
+              const ConstVectorView& positions, SolveReport& report);
+
+  InstructionSet level_;
+  kernel::AttemptFunction attempt_;
+  std::vector<double> memory_;
+  kernel::Workspace workspace_ = {};
+  Eigen::VectorXd start_;
+  Eigen::VectorXd best_;
+  Eigen::VectorXd change_;
+  std::vector<double> best_errors2_;
+};
+
+}  // namespace gelenk
+
+#endif  // GELENK_IK_LEVENBERG_MARQUARDT_SOLVER_H_

@@ -1,0 +1,30 @@
+// What can be said about a pose besides how near it is: how far it moved, and
+// how the goals' Jacobian is conditioned there.
+#ifndef GELENK_IK_SOLVE_DIAGNOSIS_H_
+#define GELENK_IK_SOLVE_DIAGNOSIS_H_
+
+#include <Eigen/Core>
+
+#include "gelenk/ik/ik_problem.h"
+#include "gelenk/ik/solve_report.h"
+#include "gelenk/skeleton/pose.h"
+
+namespace gelenk {
+
+// Singular values of the task Jacobian below this part of the largest count as
+// zero.
+inline constexpr double kRankCutoff = 1e-9;
+
+// sqrt(sum over degrees of freedom of stiffness * change^2) between two poses;
+// `scratch` is resized once.
+double WeightedChange(const IkProblem& problem, const ConstVectorView& from,
+                      const ConstVectorView& to, Eigen::VectorXd& scratch);
+
+// Fills rank, free_velocity_count and the manipulabilities of `report`. Takes
+// the unweighted rows of all goals that are on. Allocates.
+void Diagnose(const IkProblem& problem, const ConstVectorView& positions,
+              SolveReport& report);
+
+}  // namespace gelenk
+
+#endif  // GELENK_IK_SOLVE_DIAGNOSIS_H_

@@ -1,0 +1,39 @@
+#include "gelenk/ik/solver_options.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "gelenk/base/violations.h"
+
+namespace gelenk {
+namespace {
+
+void CheckCount(absl::string_view field, int value, int most,
+                Violations& violations) {
+  if (value >= 0 && value <= most) return;
+  violations.Add(field, absl::StrFormat("want 0 to %d, got %d", most, value));
+}
+
+void CheckTolerance(absl::string_view field, double value,
+                    Violations& violations) {
+  if (std::isfinite(value) && value > 0) return;
+  violations.Add(field, absl::StrCat("want a finite number > 0, got ", value));
+}
+
+}  // namespace
+
+absl::Status CheckSolverOptions(const SolverOptions& options) {
+  Violations violations;
+  CheckCount("max_iterations", options.max_iterations, kMaxIterations,
+             violations);
+  CheckCount("max_restarts", options.max_restarts.value_or(0), kMaxRestarts,
+             violations);
+  CheckTolerance("position_tolerance_m", options.position_tolerance_m,
+                 violations);
+  CheckTolerance("rotation_tolerance_rad", options.rotation_tolerance_rad,
+                 violations);
+  return violations.ToStatus();
+}
+
+}  // namespace gelenk

@@ -1,0 +1,56 @@
+// How to solve. Budgets are counted, never timed: the same request gives the
+// same answer on a busy machine.
+#ifndef GELENK_IK_SOLVER_OPTIONS_H_
+#define GELENK_IK_SOLVER_OPTIONS_H_
+
+#include <cstdint>
+#include <optional>
+
+#include "absl/status/status.h"
+
+namespace gelenk {
+
+// Whether the start is the last answer of a stream or comes from nowhere.
+enum class SolveStart { kWarm, kCold };
+
+// How much of SolveReport to fill in.
+enum class ReportDetail {
+  kBrief,
+  // Adds a pass over the joints: about 20 ns a joint.
+  kWhole,
+  // Adds a decomposition of the Jacobian, about ten iterations' worth of time,
+  // and allocates.
+  kDiagnosis,
+};
+
+struct SolverOptions {
+  // Per attempt.
+  int max_iterations = 50;
+  // Attempts from other starts when one does not converge; unset means
+  // kColdRestarts from a cold start and none from a warm one.
+  std::optional<int> max_restarts;
+  // Seed of those starts.
+  int64_t restart_seed = 0;
+  // Errors that count as reached.
+  double position_tolerance_m = 1e-4;
+  double rotation_tolerance_rad = 1e-3;
+  ReportDetail detail = ReportDetail::kWhole;
+};
+
+inline constexpr int kColdRestarts = 40;
+// A budget above these is a mistake or an attack: a frame of it would hold a
+// core for seconds.
+inline constexpr int kMaxIterations = 10000;
+inline constexpr int kMaxRestarts = 10000;
+
+// INVALID_ARGUMENT naming each field out of range.
+absl::Status CheckSolverOptions(const SolverOptions& options);
+
+inline int RestartBudget(const SolverOptions& options, SolveStart start) {
+  return options.max_restarts.value_or(
+      start == SolveStart::kCold ? kColdRestarts : 0);
+}
+
+}  // namespace gelenk
+
+#endif  // GELENK_IK_SOLVER_OPTIONS_H_

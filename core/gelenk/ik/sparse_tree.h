@@ -1,0 +1,55 @@
+// A skeleton reduced to what moves the effectors of some goals: the owner of
+// the arrays behind kernel::TreeLayout.
+//
+// Depends on which effectors the goals name and on which rows they use, not on
+// targets or weights. Built once per problem; cost: linear in joints times
+// goals. Immutable, safe to read from any thread.
+#ifndef GELENK_IK_SPARSE_TREE_H_
+#define GELENK_IK_SPARSE_TREE_H_
+
+#include <vector>
+
+#include "absl/types/span.h"
+#include "gelenk/ik/kernel/tree_layout.h"
+#include "gelenk/skeleton/skeleton.h"
+
+namespace gelenk {
+
+// The effector of one goal, and which residuals it has.
+struct EffectorTask {
+  EffectorFrame effector;
+  bool translation = true;
+  bool rotation = true;
+};
+
+class SparseTree {
+ public:
+  SparseTree(const Skeleton& skeleton, absl::Span<const EffectorTask> tasks);
+
+  // Valid as long as this object stays where it is.
+  kernel::TreeLayout Layout() const;
+
+  // Index in the skeleton of the joint behind a node.
+  int joint_of(int node) const { return joints_of_nodes_[node]; }
+
+  size_t ByteSize() const;
+
+ private:
+  friend class SparseTreeBuilder;
+
+  std::vector<kernel::Node> nodes_;
+  std::vector<kernel::RotationLimit> rotation_limits_;
+  std::vector<kernel::Column> columns_;
+  std::vector<kernel::PathColumn> path_columns_;
+  std::vector<kernel::PathFollower> followers_;
+  std::vector<kernel::Task> tasks_;
+  std::vector<int> joints_of_nodes_;
+  int axis_count_ = 0;
+  int h_size_ = 0;
+  int j_size_ = 0;
+  int position_count_ = 0;
+};
+
+}  // namespace gelenk
+
+#endif  // GELENK_IK_SPARSE_TREE_H_

@@ -1,0 +1,31 @@
+// Other starts for a solve that did not converge from the first one.
+#ifndef GELENK_IK_START_SAMPLER_H_
+#define GELENK_IK_START_SAMPLER_H_
+
+#include <cstdint>
+
+#include "gelenk/skeleton/pose.h"
+
+namespace gelenk {
+
+// Deterministic: the same seed gives the same starts on every machine.
+class StartSampler {
+ public:
+  explicit StartSampler(int64_t seed);
+
+  // Draws a pose inside the limits: uniform where a coordinate is bounded or
+  // an angle; near `start` where it is not (translations, orientations), since
+  // the last known place of an actor is the best guess there is.
+  void Sample(const Skeleton& skeleton, const ConstVectorView& start,
+              VectorView positions);
+
+ private:
+  // Uniform in [lower, upper).
+  double Uniform(double lower, double upper);
+
+  uint64_t state_;
+};
+
+}  // namespace gelenk
+
+#endif  // GELENK_IK_START_SAMPLER_H_
