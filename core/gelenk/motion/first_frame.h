@@ -1,0 +1,34 @@
+// Finds clips whose first frame is no part of the motion: many conversions put
+// the rest pose there, and the body jumps out of it by a quarter turn or more.
+#ifndef GELENK_MOTION_FIRST_FRAME_H_
+#define GELENK_MOTION_FIRST_FRAME_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "gelenk/skeleton/skeleton.h"
+
+namespace gelenk {
+
+struct FirstFrameJump {
+  // The joint that turns most from frame 0 to frame 1, and by how much.
+  int joint = -1;
+  double angle_rad = 0;
+  // The median over the other pairs of frames of that largest turn.
+  double typical_rad = 0;
+};
+
+// A jump is a turn by at least this, and by so many times the typical one: fast
+// motion sampled slowly has large turns everywhere.
+inline constexpr double kMinJumpRad = 0.35;
+inline constexpr double kMinJumpRatio = 8;
+
+// `positions` holds one pose a column. Unset when the clip begins smoothly or
+// has fewer than three frames. Cost: linear.
+std::optional<FirstFrameJump> FindFirstFrameJump(
+    const Skeleton& skeleton,
+    const Eigen::Ref<const Eigen::MatrixXd>& positions);
+
+}  // namespace gelenk
+
+#endif  // GELENK_MOTION_FIRST_FRAME_H_
