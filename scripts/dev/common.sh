@@ -84,15 +84,16 @@ need_command() {
 }
 
 # buf comes from npm, pinned in tools/node. Its binary is in a package of its
-# own per platform, so no install script needs to run.
+# own per platform, so no install script needs to run. Fails where npm's registry
+# cannot be reached: the caller then says what goes unchecked.
 need_buf() {
   local log
   need_command "buf" npm nodejs npm
   [ -x "$BUF" ] && [ "$BUF" -nt tools/node/package-lock.json ] && return
   log=$(mktemp)
   say "installing buf from npm (tools/node/package-lock.json)"
-  quietly "$log" npm --prefix tools/node ci --ignore-scripts ||
-    return 1
+  quietly "$log" env npm_config_fetch_retries=1 \
+    npm --prefix tools/node ci --ignore-scripts || return 1
   touch -h "$BUF"
   rm -f "$log"
 }
