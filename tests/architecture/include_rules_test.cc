@@ -20,6 +20,7 @@ using ::testing::IsEmpty;
 const std::string kStd = "<";
 const std::string kCore = "gelenk/";
 const std::string kGenerated = "gelenk/v1/";
+const std::string kInternal = "gelenk/internal/";  // Messages of our own.
 const std::string kClient = "gelenk/client/";
 const std::string kConvert = "convert/";
 const std::string kGrpc = "grpcpp/";
@@ -34,20 +35,17 @@ Includes operator+(Includes left, const Includes& right) {
 const Includes kPosix = {"unistd.h", "fcntl.h", "signal.h", "poll.h",
                          "sys/",     "netdb.h", "arpa/",    "netinet/"};
 
-// core has no input and output, no clock and no thread.
-const Includes kNotInCore = {kGenerated,          kClient,
-                             "<iostream>",        "<fstream>",
-                             "<cstdio>",          "<filesystem>",
-                             "<chrono>",          "<ctime>",
-                             "<thread>",          "<stop_token>",
-                             "<mutex>",           "<shared_mutex>",
-                             "<future>",          "<semaphore>",
-                             "<latch>",           "<barrier>",
-                             "<csignal>",         "absl/synchronization/",
-                             "absl/time/clock.h", "<condition_variable>"};
-
 // clang-format off
-//
+
+// core has no input and output, no clock and no thread.
+const Includes kNotInCore = {
+    kGenerated, kInternal, kClient,
+    "<iostream>", "<fstream>", "<cstdio>", "<filesystem>",
+    "<chrono>", "<ctime>", "absl/time/clock.h",
+    "<thread>", "<stop_token>", "<mutex>", "<shared_mutex>", "<future>",
+    "<semaphore>", "<latch>", "<barrier>", "<condition_variable>", "<csignal>",
+    "absl/synchronization/"};
+
 // The arrows, and no others. The longest fitting prefix decides.
 const std::vector<Room>& House() {
   static const std::vector<Room> house = {
@@ -55,35 +53,37 @@ const std::vector<Room>& House() {
     {"core/",           {kStd, "Eigen/", "absl/", kCore}, kNotInCore},
 
     // convert: the only code that knows both messages and core types.
-    {"proto/convert/",  {kStd, "Eigen/", "absl/", kCore, kGenerated, kConvert,
-                         "google/protobuf/"}, {kClient}},
+    {"proto/convert/",  {kStd, "Eigen/", "absl/", kCore, kGenerated,
+                         kInternal, kConvert, "google/protobuf/"}, {kClient}},
 
     // session, store: the server's domain, without gRPC and messages.
     {"server/session/", {kStd, "Eigen/", "absl/", kCore, "server/session/",
-                         "server/store/"}, {kGenerated, kClient}},
+                         "server/store/"}, {kGenerated, kInternal, kClient}},
     {"server/store/",   {kStd, "absl/", kCore, "server/store/"},
-                        {kGenerated, kClient}},
+                        {kGenerated, kInternal, kClient}},
 
     // rpc: convert, call, convert, return.
-    {"server/rpc/",     {kStd, "Eigen/", "absl/", kCore, kGenerated, kConvert,
-                         kGrpc, "google/protobuf/", "server/rpc/",
-                         "server/session/", "server/store/"}, {kClient}},
+    {"server/rpc/",     {kStd, "Eigen/", "absl/", kCore, kGenerated,
+                         kInternal, kConvert, kGrpc, "google/protobuf/",
+                         "server/rpc/", "server/session/", "server/store/"},
+                        {kClient}},
 
     // ops: what a running server needs around the calls.
     {"server/ops/",     Includes{kStd, "absl/", kCore, kGenerated, kGrpc,
                          "spdlog/", "nlohmann/", "server/ops/",
                          "server/session/", "server/store/"} + kPosix,
-                        {kClient}},
+                        {kInternal, kClient}},
 
     // main, options, server: put the rooms together.
     {"server/",         Includes{kStd, "absl/", kCore, kGenerated, kGrpc,
                          "CLI/", "spdlog/", "nlohmann/", "server/"} + kPosix,
-                        {kClient}},
+                        {kInternal, kClient}},
 
     // client: talks to the server over the wire only.
     {"client/",         Includes{kStd, "Eigen/", "absl/", kCore, kGenerated,
                          kClient, kConvert, kGrpc, "google/protobuf/", "CLI/",
-                         "spdlog/", "nlohmann/", "client/"} + kPosix, {}},
+                         "spdlog/", "nlohmann/", "client/"} + kPosix,
+                        {kInternal}},
 
     // Without --server the CLI hosts the same service in its own process; this
     // is the one file that may know how.
