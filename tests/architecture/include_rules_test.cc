@@ -56,17 +56,18 @@ const std::vector<Room>& House() {
     {"proto/convert/",  {kStd, "Eigen/", "absl/", kCore, kGenerated,
                          kInternal, kConvert, "google/protobuf/"}, {kClient}},
 
-    // session, store: the server's domain, without gRPC and messages.
-    {"server/session/", {kStd, "Eigen/", "absl/", kCore, "server/session/",
-                         "server/store/"}, {kGenerated, kInternal, kClient}},
-    {"server/store/",   {kStd, "absl/", kCore, "server/store/"},
+    // session, store: the server's domain, without gRPC and messages. Stores
+    // may use what sessions are made of, not the other way round.
+    {"server/session/", {kStd, "Eigen/", "absl/", kCore, "server/session/"},
                         {kGenerated, kInternal, kClient}},
+    {"server/store/",   {kStd, "absl/", kCore, "server/session/",
+                         "server/store/"}, {kGenerated, kInternal, kClient}},
 
     // rpc: convert, call, convert, return.
     {"server/rpc/",     {kStd, "Eigen/", "absl/", kCore, kGenerated,
                          kInternal, kConvert, kGrpc, "google/protobuf/",
-                         "server/rpc/", "server/session/", "server/store/"},
-                        {kClient}},
+                         "server/options.h", "server/rpc/", "server/session/",
+                         "server/store/"}, {kClient}},
 
     // ops: what a running server needs around the calls.
     {"server/ops/",     Includes{kStd, "absl/", kCore, kGenerated, kGrpc,
