@@ -1,15 +1,30 @@
 #include "gelenk/math/rotation.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace gelenk {
 namespace {
 
 // Below this the ratio sin(x)/x is 1 to the last digit.
 constexpr double kTinyAngle = 1e-8;
+// Unit vectors whose sum is shorter have no middle to speak of: rounding turns
+// it by 1e-16 over that length.
+constexpr double kOpposite = 1e-8;
+// Sine or cosine below which an angle is 0 or a right angle.
+constexpr double kNoAngle = 1e-12;
 
 Eigen::Vector3d AnyPerpendicular(const Eigen::Vector3d& axis) {
   return axis.unitOrthogonal();
+}
+
+// Twice the rotation from `from` to the middle between the two.
+Eigen::Quaterniond RotationThroughMiddle(const Eigen::Vector3d& from,
+                                         const Eigen::Vector3d& to) {
+  const Eigen::Vector3d middle = (from + to).normalized();
+  const Eigen::Vector3d sine = from.cross(middle);
+  return QuaternionXyzw(sine.x(), sine.y(), sine.z(), from.dot(middle))
+      .normalized();
 }
 
 }  // namespace
@@ -55,7 +70,11 @@ Eigen::Quaterniond InHemisphereOf(const Eigen::Quaterniond& reference,
 
 Eigen::Quaterniond ShortestRotation(const Eigen::Vector3d& from,
                                     const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to);
+  if ((from + to).norm() > kOpposite) return RotationThroughMiddle(from, to);
+  // Half a turn, then the little that is left.
+  const Eigen::Vector3d axis = AnyPerpendicular(from);
+  return RotationThroughMiddle(-from, to) *
+         QuaternionXyzw(axis.x(), axis.y(), axis.z(), 0);
 }
 
 SwingTwist DecomposeSwingTwist(const Eigen::Quaterniond& rotation,
@@ -66,13 +85,15 @@ SwingTwist DecomposeSwingTwist(const Eigen::Quaterniond& rotation,
   const double swing_sine = across.norm();
   const double swing_cosine = std::hypot(along, rotation.w());
   parts.swing_rad = 2 * std::atan2(swing_sine, swing_cosine);
-  if (swing_cosine < 1e-12) {
+  if (swing_cosine < kNoAngle) {
+    parts.swing_rad = std::numbers::pi;
     parts.swing_axis = across / swing_sine;
     return parts;
   }
   const double sign = rotation.w() < 0 ? -1 : 1;
   parts.twist_rad = 2 * std::atan2(sign * along, sign * rotation.w());
-  if (swing_sine < 1e-12) {
+  if (parts.twist_rad <= -std::numbers::pi) parts.twist_rad = std::numbers::pi;
+  if (swing_sine < kNoAngle) {
     parts.swing_axis = AnyPerpendicular(axis);
     return parts;
   }

@@ -45,7 +45,8 @@ double AngleBetween(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 Eigen::Quaterniond InHemisphereOf(const Eigen::Quaterniond& reference,
                                   const Eigen::Quaterniond& q);
 
-// Shortest rotation that takes unit vector `from` to unit vector `to`.
+// Shortest rotation that takes unit vector `from` to unit vector `to`. Between
+// opposite vectors half a turn about one perpendicular axis; for Z that is -Y.
 Eigen::Quaterniond ShortestRotation(const Eigen::Vector3d& from,
                                     const Eigen::Vector3d& to);
 
