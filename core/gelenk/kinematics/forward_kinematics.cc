@@ -16,7 +16,9 @@ RigidTransform PlanarMotion(const Joint& joint, const double* q) {
 RigidTransform JointMotion(const Skeleton& skeleton, int index,
                            const ConstVectorView& positions) {
   const Joint& joint = skeleton.joint(index);
-  const double* q = positions.data() + skeleton.span(index).position_offset;
+  const int offset = skeleton.span(index).position_offset;
+  // Fixed and mimic joints own no numbers.
+  const double* q = offset < 0 ? nullptr : positions.data() + offset;
   switch (joint.type) {
     case JointType::kFixed:
       return {};
