@@ -23,14 +23,16 @@ TwistRange RangeOf(const JointLimits& limits) {
           limits.twist_upper_rad.value_or(kInfinity)};
 }
 
+// By how much `twist` breaks the range, rad.
+double ExcessOf(double twist, const TwistRange& range) {
+  return std::max({range.lower - twist, twist - range.upper, 0.0});
+}
+
 // The turn of `twist` that breaks the range least.
 double NearestTurn(double twist, const TwistRange& range) {
-  const auto excess = [&range](double t) {
-    return std::max({range.lower - t, t - range.upper, 0.0});
-  };
   double best = twist;
   for (double candidate : {twist - kTurn, twist + kTurn}) {
-    if (excess(candidate) < excess(best)) best = candidate;
+    if (ExcessOf(candidate, range) < ExcessOf(best, range)) best = candidate;
   }
   return best;
 }
@@ -43,8 +45,11 @@ double RotationLimitExcess(const JointLimits& limits,
   if (!limits.HasRotationLimits()) return 0;
   const SwingTwist parts = DecomposeSwingTwist(rotation, axis);
   const TwistRange range = RangeOf(limits);
-  const double twist = NearestTurn(parts.twist_rad, range);
-  double excess = std::max({range.lower - twist, twist - range.upper, 0.0});
+  double excess = 0;
+  // At a swing of pi any twist fits.
+  if (parts.swing_rad < std::numbers::pi) {
+    excess = ExcessOf(NearestTurn(parts.twist_rad, range), range);
+  }
   if (limits.swing_cone_rad) {
     excess = std::max(excess, parts.swing_rad - *limits.swing_cone_rad);
   }
