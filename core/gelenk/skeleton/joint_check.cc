@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kMaxTwist = 2 * std::numbers::pi;
 
-std::string Text(const Eigen::Vector3d& v) {
-  return absl::StrFormat("(%g, %g, %g)", v.x(), v.y(), v.z());
-}
-
 void CheckUnit(absl::string_view field, Eigen::Vector3d& direction,
                Violations& violations) {
   const double norm = direction.norm();
@@ -31,13 +27,17 @@ void CheckUnit(absl::string_view field, Eigen::Vector3d& direction,
   if (std::abs(norm - 1) > kUnitExact) direction /= norm;
 }
 
-void CheckFinite(absl::string_view field, const std::vector<double>& values,
+void CheckFinite(absl::string_view field, double value,
                  Violations& violations) {
-  for (size_t i = 0; i < values.size(); ++i) {
-    if (std::isfinite(values[i])) continue;
-    violations.Add(absl::StrCat(field, "[", i, "]"),
-                   absl::StrCat("want a finite number, got ", values[i]));
-  }
+  if (std::isfinite(value)) return;
+  violations.Add(field, absl::StrCat("want a finite number, got ", value));
+}
+
+void CheckFinite(absl::string_view field, const Eigen::Vector3d& vector,
+                 Violations& violations) {
+  if (vector.allFinite()) return;
+  violations.Add(field,
+                 absl::StrCat("want finite numbers, got ", Text(vector)));
 }
 
 void CheckSize(absl::string_view field, size_t size, int want,
@@ -47,13 +47,18 @@ void CheckSize(absl::string_view field, size_t size, int want,
       field, absl::StrFormat("want %d numbers or none, got %d", want, size));
 }
 
-void CheckNotNegative(absl::string_view field,
-                      const std::vector<double>& values,
+void CheckNotNegative(absl::string_view field, double value,
                       Violations& violations) {
+  if (std::isfinite(value) && value >= 0) return;
+  violations.Add(field, absl::StrCat("want a finite number >= 0, got ", value));
+}
+
+// One number per degree of freedom, or none.
+void CheckRates(absl::string_view field, const std::vector<double>& values,
+                int want, Violations& violations) {
+  CheckSize(field, values.size(), want, violations);
   for (size_t i = 0; i < values.size(); ++i) {
-    if (std::isfinite(values[i]) && values[i] >= 0) continue;
-    violations.Add(absl::StrCat(field, "[", i, "]"),
-                   absl::StrCat("want a finite number >= 0, got ", values[i]));
+    CheckNotNegative(absl::StrCat(field, "[", i, "]"), values[i], violations);
   }
 }
 
@@ -75,11 +80,9 @@ void CheckBox(absl::string_view field, const Joint& joint,
   const int want = BoundedCount(joint.type);
   CheckSize(absl::StrCat(field, ".limits.lower"), limits.lower.size(), want,
             violations);
-  CheckSize(absl::StrCat(field, ".limits.upper"), limits.upper.size(),
-            limits.lower.size(), violations);
   if (limits.lower.size() != limits.upper.size()) {
-    violations.Add(absl::StrCat(field, ".limits"),
-                   absl::StrFormat("lower has %d numbers, upper %d",
+    violations.Add(absl::StrCat(field, ".limits.upper"),
+                   absl::StrFormat("want as many numbers as lower, %d, got %d",
                                    limits.lower.size(), limits.upper.size()));
     return;
   }
@@ -88,10 +91,9 @@ void CheckBox(absl::string_view field, const Joint& joint,
     const double upper = limits.upper[i];
     // Infinities mean "unlimited on this side"; NaN fails the comparison.
     if (lower <= upper && lower < INFINITY && upper > -INFINITY) continue;
-    violations.Add(
-        absl::StrCat(field, ".limits.lower[", i, "]"),
-        absl::StrFormat("joint \"%s\": lower limit %g > upper limit %g",
-                        absl::CHexEscape(joint.id), lower, upper));
+    violations.Add(absl::StrCat(field, ".limits.lower[", i, "]"),
+                   absl::StrFormat("joint %s: lower limit %g > upper limit %g",
+                                   QuotedId(joint.id), lower, upper));
   }
 }
 
@@ -120,11 +122,10 @@ void CheckRotationLimits(absl::string_view field, const Joint& joint,
              limits.twist_upper_rad, -kMaxTwist, kMaxTwist, violations);
   if (limits.twist_lower_rad && limits.twist_upper_rad &&
       *limits.twist_lower_rad > *limits.twist_upper_rad) {
-    violations.Add(
-        absl::StrCat(field, ".limits.twist_lower_rad"),
-        absl::StrFormat("joint \"%s\": lower limit %g > upper limit %g",
-                        absl::CHexEscape(joint.id), *limits.twist_lower_rad,
-                        *limits.twist_upper_rad));
+    violations.Add(absl::StrCat(field, ".limits.twist_lower_rad"),
+                   absl::StrFormat("joint %s: lower limit %g > upper limit %g",
+                                   QuotedId(joint.id), *limits.twist_lower_rad,
+                                   *limits.twist_upper_rad));
   }
 }
 
@@ -137,11 +138,23 @@ void CheckMimic(absl::string_view field, const Joint& joint,
                    absl::StrCat("a ", JointTypeName(joint.type),
                                 " joint cannot follow another"));
   }
-  CheckFinite(absl::StrCat(field, ".mimic"),
-              {joint.mimic->multiplier, joint.mimic->offset}, violations);
+  CheckFinite(absl::StrCat(field, ".mimic.multiplier"), joint.mimic->multiplier,
+              violations);
+  CheckFinite(absl::StrCat(field, ".mimic.offset"), joint.mimic->offset,
+              violations);
 }
 
 }  // namespace
+
+std::string Text(const Eigen::Vector3d& v) {
+  return absl::StrFormat("(%g, %g, %g)", v.x(), v.y(), v.z());
+}
+
+std::string QuotedId(absl::string_view id) {
+  const bool cut = id.size() > kMaxIdBytes;
+  return absl::StrCat("\"", absl::CHexEscape(id.substr(0, kMaxIdBytes)),
+                      cut ? "...\"" : "\"");
+}
 
 void CheckId(absl::string_view field, absl::string_view id,
              Violations& violations) {
@@ -152,19 +165,15 @@ void CheckId(absl::string_view field, absl::string_view id,
   }
   for (unsigned char c : id) {
     if (!absl::ascii_iscntrl(c)) continue;
-    violations.Add(field, absl::StrCat("control character in \"",
-                                       absl::CHexEscape(id), "\""));
+    violations.Add(field, absl::StrCat("control character in ", QuotedId(id)));
     return;
   }
 }
 
 void CheckAndNormalize(absl::string_view field, RigidTransform& transform,
                        Violations& violations) {
-  if (!transform.translation.allFinite()) {
-    violations.Add(
-        absl::StrCat(field, ".translation"),
-        absl::StrCat("want finite numbers, got ", Text(transform.translation)));
-  }
+  CheckFinite(absl::StrCat(field, ".translation"), transform.translation,
+              violations);
   if (!NormalizeNearUnit(transform.rotation.coeffs().data())) {
     const Eigen::Quaterniond& q = transform.rotation;
     violations.Add(
@@ -187,23 +196,19 @@ void CheckAndNormalize(absl::string_view field, Joint& joint,
   CheckBox(field, joint, violations);
   CheckRotationLimits(field, joint, violations);
   CheckMimic(field, joint, violations);
-  const int velocities = VelocityCount(joint.type);
-  const auto check_rates = [&](absl::string_view name,
-                               const std::vector<double>& values) {
-    const std::string path = absl::StrCat(field, ".", name);
-    CheckSize(path, values.size(), velocities, violations);
-    CheckNotNegative(path, values, violations);
-  };
-  check_rates("limits.max_velocity", joint.limits.max_velocity);
-  check_rates("limits.max_acceleration", joint.limits.max_acceleration);
-  check_rates("stiffness", joint.stiffness);
-  CheckNotNegative(absl::StrCat(field, ".link_length_m"), {joint.link_length_m},
+  const int rates = VelocityCount(joint.type);
+  CheckRates(absl::StrCat(field, ".limits.max_velocity"),
+             joint.limits.max_velocity, rates, violations);
+  CheckRates(absl::StrCat(field, ".limits.max_acceleration"),
+             joint.limits.max_acceleration, rates, violations);
+  CheckRates(absl::StrCat(field, ".stiffness"), joint.stiffness, rates,
+             violations);
+  CheckNotNegative(absl::StrCat(field, ".link_length_m"), joint.link_length_m,
                    violations);
-  CheckNotNegative(absl::StrCat(field, ".link_mass_kg"), {joint.link_mass_kg},
+  CheckNotNegative(absl::StrCat(field, ".link_mass_kg"), joint.link_mass_kg,
                    violations);
-  const Eigen::Vector3d& center = joint.link_center_of_mass;
   CheckFinite(absl::StrCat(field, ".link_center_of_mass"),
-              {center.x(), center.y(), center.z()}, violations);
+              joint.link_center_of_mass, violations);
 }
 
 }  // namespace gelenk

@@ -2,11 +2,19 @@
 #ifndef GELENK_SKELETON_JOINT_CHECK_H_
 #define GELENK_SKELETON_JOINT_CHECK_H_
 
+#include <string>
+
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/skeleton/joint.h"
 
 namespace gelenk {
+
+// `v` as "(x, y, z)", for messages.
+std::string Text(const Eigen::Vector3d& v);
+
+// `id` in quotes, escaped, cut where it is longer than an id can be.
+std::string QuotedId(absl::string_view id);
 
 // Ids are 1 to kMaxIdBytes bytes of text without control characters.
 inline constexpr int kMaxIdBytes = 63;

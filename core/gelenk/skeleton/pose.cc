@@ -6,7 +6,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "gelenk/base/violations.h"
 #include "gelenk/math/rotation.h"
 
 namespace gelenk {
@@ -29,7 +28,6 @@ void ForEachMoving(const Skeleton& skeleton, Visit visit) {
 }
 
 void CheckQuaternion(int at, VectorView positions, Violations& violations) {
-  if (!positions.segment<4>(at).allFinite()) return;  // already reported
   if (NormalizeNearUnit(positions.data() + at)) return;
   violations.Add(absl::StrCat("positions[", at, "]"),
                  absl::StrFormat("want a unit quaternion, got (%g, %g, %g, %g)",
@@ -61,16 +59,23 @@ absl::Status CheckPositions(const Skeleton& skeleton, VectorView positions) {
                                                 positions.size()));
     return violations.ToStatus();
   }
-  for (int i = 0; i < positions.size(); ++i) {
+  ForEachMoving(skeleton, [&](int i, int q, int) {
+    CheckJointPositions(skeleton.joint(i).type, q, positions, violations);
+  });
+  return violations.ToStatus();
+}
+
+void CheckJointPositions(JointType type, int offset, VectorView positions,
+                         Violations& violations) {
+  const int count = PositionCount(type);
+  for (int i = offset; i < offset + count; ++i) {
     if (std::isfinite(positions[i])) continue;
     violations.Add(absl::StrCat("positions[", i, "]"),
                    absl::StrCat("want a finite number, got ", positions[i]));
   }
-  ForEachMoving(skeleton, [&](int i, int q, int) {
-    const int start = QuaternionStart(skeleton.joint(i).type);
-    if (start >= 0) CheckQuaternion(q + start, positions, violations);
-  });
-  return violations.ToStatus();
+  const int at = offset + QuaternionStart(type);
+  if (at < offset || !positions.segment<4>(at).allFinite()) return;
+  CheckQuaternion(at, positions, violations);
 }
 
 void Integrate(const Skeleton& skeleton, const ConstVectorView& positions,

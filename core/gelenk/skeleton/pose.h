@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "absl/status/status.h"
+#include "gelenk/base/violations.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -26,6 +27,10 @@ Eigen::VectorXd NeutralPositions(const Skeleton& skeleton);
 // not finite or a quaternion is not near unit. Normalises those that are near
 // (see NormalizeNearUnit); takes exact ones as they are.
 absl::Status CheckPositions(const Skeleton& skeleton, VectorView positions);
+
+// The same for the numbers at `offset` of one joint that owns them.
+void CheckJointPositions(JointType type, int offset, VectorView positions,
+                         Violations& violations);
 
 // q moved by `velocity` for unit time: result = q [+] velocity. `result` may
 // alias `positions`.

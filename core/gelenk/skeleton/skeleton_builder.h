@@ -38,12 +38,22 @@ class SkeletonBuilder {
   SkeletonBuilder& SetBounds(const SkeletonBounds& bounds);
 
   // Joints keep their order of adding where that has parents first; else they
-  // are moved behind their parents. Cost: linear in the joints.
+  // are moved behind their parents. Errors name joints by their place in the
+  // order of adding. Cost: linear in the joints.
   absl::StatusOr<std::shared_ptr<const Skeleton>> Build() const;
 
  private:
-  // Indices of joints_ with parents first; reports what is no tree.
-  std::vector<int> OrderParentsFirst(Violations& violations) const;
+  absl::Status CheckCounts() const;
+
+  // Moves `joints`, checked, into the skeleton in the given order of their
+  // indices.
+  void PlaceJoints(const std::vector<int>& order, std::vector<Joint>& joints,
+                   Skeleton& skeleton) const;
+
+  // `given` in the order of adding, or empty.
+  void PlaceRestPositions(const std::vector<int>& order,
+                          const Eigen::VectorXd& given,
+                          Skeleton& skeleton) const;
 
   std::vector<Joint> joints_;
   std::vector<EndEffector> end_effectors_;
