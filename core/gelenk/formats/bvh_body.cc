@@ -9,8 +9,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "gelenk/kinematics/forward_kinematics.h"
+#include "gelenk/motion/body_height.h"
 #include "gelenk/motion/body_parts.h"
-#include "gelenk/motion/body_shape.h"
 
 namespace gelenk {
 namespace {
@@ -35,51 +35,10 @@ constexpr double kTypicalHeight = 1.7;
 constexpr double kMinHeight = 0.6;
 constexpr double kMaxHeight = 2.3;
 
-// Hair or a hat adds no more than this to the way from foot to head.
-constexpr double kMaxAboveHead = 0.25;
-
 struct Height {
   double units = 0;
   bool is_body = false;
 };
-
-double BoneLength(const WorldTransforms& world_from_joints,
-                  const Skeleton& skeleton, int joint) {
-  const int parent = skeleton.span(joint).parent;
-  return (world_from_joints[joint].translation -
-          world_from_joints[parent].translation)
-      .norm();
-}
-
-double WayUp(const WorldTransforms& world_from_joints, const Skeleton& skeleton,
-             int joint, int ancestor) {
-  double way = 0;
-  for (; joint != ancestor; joint = skeleton.span(joint).parent) {
-    way += BoneLength(world_from_joints, skeleton, joint);
-  }
-  return way;
-}
-
-// The longest way from `head` to a joint or end effector below it.
-double WayAbove(const WorldTransforms& world_from_joints,
-                const Skeleton& skeleton, int head) {
-  std::vector<double> ways(skeleton.joint_count(), -1);
-  ways[head] = 0;
-  double longest = 0;
-  for (int i = head + 1; i < skeleton.joint_count(); ++i) {
-    const double below = ways[skeleton.span(i).parent];
-    if (below < 0) continue;
-    ways[i] = below + BoneLength(world_from_joints, skeleton, i);
-    longest = std::max(longest, ways[i]);
-  }
-  for (const EndEffector& effector : skeleton.end_effectors()) {
-    const double below = ways[skeleton.FindJoint(effector.joint_id)];
-    if (below < 0) continue;
-    longest = std::max(
-        longest, below + effector.joint_from_end_effector.translation.norm());
-  }
-  return longest;
-}
 
 // Of the points and, where they are above it, the ground.
 double LargestExtent(const WorldTransforms& world_from_joints,
@@ -102,23 +61,16 @@ double LargestExtent(const WorldTransforms& world_from_joints,
 
 Height HeightOf(const BvhDocument& document, const Skeleton& skeleton,
                 const BvhMapping& mapping) {
-  Eigen::VectorXd positions = skeleton.rest_positions();
-  WorldTransforms world_from_joints;
-  const BodyParts parts = FindBodyParts(skeleton);
-  if (!parts.IsComplete()) {
-    if (document.frame_count() > 0) {
-      PoseFromChannels(mapping, document.motion.col(0), positions);
-    }
-    ForwardKinematics(skeleton, positions, world_from_joints);
-    return {LargestExtent(world_from_joints, skeleton), false};
+  if (const auto body = BodyHeight(skeleton, FindBodyParts(skeleton))) {
+    return {*body, true};
   }
+  Eigen::VectorXd positions = skeleton.rest_positions();
+  if (document.frame_count() > 0) {
+    PoseFromChannels(mapping, document.motion.col(0), positions);
+  }
+  WorldTransforms world_from_joints;
   ForwardKinematics(skeleton, positions, world_from_joints);
-  const int meeting = CommonAncestor(skeleton, parts.left_foot, parts.head);
-  const double way =
-      WayUp(world_from_joints, skeleton, parts.left_foot, meeting) +
-      WayUp(world_from_joints, skeleton, parts.head, meeting);
-  const double above = WayAbove(world_from_joints, skeleton, parts.head);
-  return {way + std::min(above, kMaxAboveHead * way), true};
+  return {LargestExtent(world_from_joints, skeleton), false};
 }
 
 // How far a height is from that of people; more than any fitting one when it
