@@ -29,6 +29,14 @@ absl::Status CheckSolverOptions(const SolverOptions& options) {
              violations);
   CheckCount("max_restarts", options.max_restarts.value_or(0), kMaxRestarts,
              violations);
+  const int64_t total = int64_t{options.max_iterations} *
+                        (1 + options.max_restarts.value_or(kColdRestarts));
+  if (violations.empty() && total > kMaxTotalIterations) {
+    violations.Add("max_restarts",
+                   absl::StrFormat("want at most %d iterations over all "
+                                   "restarts, got %d",
+                                   kMaxTotalIterations, total));
+  }
   CheckTolerance("position_tolerance_m", options.position_tolerance_m,
                  violations);
   CheckTolerance("rotation_tolerance_rad", options.rotation_tolerance_rad,

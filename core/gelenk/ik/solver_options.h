@@ -40,8 +40,9 @@ struct SolverOptions {
 inline constexpr int kColdRestarts = 40;
 // A budget above these is a mistake or an attack: a frame of it would hold a
 // core for seconds.
-inline constexpr int kMaxIterations = 10000;
-inline constexpr int kMaxRestarts = 10000;
+inline constexpr int kMaxIterations = 1000;
+inline constexpr int kMaxRestarts = 1000;
+inline constexpr int kMaxTotalIterations = 50000;
 
 // INVALID_ARGUMENT naming each field out of range.
 absl::Status CheckSolverOptions(const SolverOptions& options);

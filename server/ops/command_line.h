@@ -1,0 +1,32 @@
+// The flags of gelenkd.
+#ifndef GELENK_SERVER_OPS_COMMAND_LINE_H_
+#define GELENK_SERVER_OPS_COMMAND_LINE_H_
+
+#include <optional>
+#include <string>
+
+#include "absl/time/time.h"
+#include "server/options.h"
+
+namespace gelenk::server {
+
+struct CommandLine {
+  ServerOptions server;
+  // Receives the address once the server listens.
+  std::string port_file;
+  std::string log_level = "info";
+  // How long streams have to leave after SIGTERM.
+  absl::Duration drain = absl::Seconds(20);
+};
+
+// An exit code when the process is to end right away (help, version, mistakes,
+// which have been printed).
+std::optional<int> ParseCommandLine(int argc, char** argv,
+                                    CommandLine& command_line);
+
+// Writes "host:port\n" so that a reader sees all or nothing.
+bool WritePortFile(const std::string& path, const std::string& address);
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_OPS_COMMAND_LINE_H_

@@ -1,0 +1,41 @@
+// gelenk.v1.Session and its parts to and from the domain's sessions.
+#ifndef GELENK_SERVER_RPC_SESSION_MESSAGE_H_
+#define GELENK_SERVER_RPC_SESSION_MESSAGE_H_
+
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "gelenk/v1/session.pb.h"
+#include "gelenk/v1/session_service.pb.h"
+#include "server/options.h"
+#include "server/session/session.h"
+
+namespace gelenk::server {
+
+// Everything of `session`; `draining` is the server's.
+void ToProto(const Session& session, bool draining, v1::Session* proto);
+
+// What a new session shall be, every violation listed.
+absl::StatusOr<SessionState> StateFromProto(const v1::Session& proto,
+                                            const Skeleton& skeleton,
+                                            const Limits& limits);
+
+// Replaces the parts of `state` that `request` names.
+absl::Status UpdateState(const v1::UpdateSessionRequest& request,
+                         const Skeleton& skeleton, const Limits& limits,
+                         SessionState& state);
+
+// The revision in an etag; unset for an empty one, INVALID_ARGUMENT for one
+// that this server never gave.
+absl::StatusOr<std::optional<int64_t>> RevisionOf(const std::string& etag);
+
+void ToProto(absl::Duration duration, google::protobuf::Duration* proto);
+absl::Duration FromProto(const google::protobuf::Duration& proto);
+void ToProto(absl::Time time, google::protobuf::Timestamp* proto);
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_RPC_SESSION_MESSAGE_H_

@@ -1,0 +1,240 @@
+#include "server/rpc/session_service.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "convert/goal.h"
+#include "convert/pose.h"
+#include "convert/solver.h"
+#include "gelenk/base/violations.h"
+#include "gelenk/kinematics/forward_kinematics.h"
+#include "server/rpc/page.h"
+#include "server/rpc/session_message.h"
+#include "server/rpc/streaming_solve_call.h"
+#include "server/rpc/unary_call.h"
+#include "server/rpc/watch_session_call.h"
+
+namespace gelenk::server {
+namespace {
+
+using Service = v1::SessionService::AsyncService;
+using Solver = LevenbergMarquardtSolver;
+
+// Keys travel as a header, so they must be visible ASCII.
+constexpr size_t kMaxAffinityKeyBytes = 128;
+
+absl::Status CheckAffinityKey(absl::string_view key) {
+  bool visible = key.size() <= kMaxAffinityKeyBytes;
+  for (char c : key) visible = visible && c > ' ' && c <= '~';
+  if (visible) return absl::OkStatus();
+  Violations violations;
+  violations.Add("session.affinity_key",
+                 absl::StrCat("want at most ", kMaxAffinityKeyBytes,
+                              " visible ASCII characters"));
+  return violations.ToStatus();
+}
+
+absl::StatusOr<std::shared_ptr<Session>> FindSession(const ServiceState& state,
+                                                     absl::string_view field,
+                                                     const std::string& name) {
+  absl::Status status = CheckResourceName(field, kSessions, name);
+  if (!status.ok()) return status;
+  return state.sessions.Find(kDefaultTenant, name, absl::Now());
+}
+
+absl::StatusOr<std::shared_ptr<Session>> MakeSession(const ServiceState& state,
+                                                     const v1::Session& proto,
+                                                     std::string name,
+                                                     absl::Time now) {
+  absl::StatusOr<StoredSkeleton> stored =
+      state.skeletons.Find(kDefaultTenant, proto.skeleton());
+  if (!stored.ok()) return stored.status();
+  Violations violations;
+  absl::StatusOr<SessionState> parts =
+      StateFromProto(proto, *stored->skeleton, state.options.limits);
+  violations.AddStatus("session", parts.status());
+  if (!violations.empty()) return violations.ToStatus();
+  absl::StatusOr<IkProblem> problem =
+      IkProblem::Create(stored->skeleton, parts->goals);
+  violations.AddStatus("session", problem.status());
+  if (!violations.empty()) return violations.ToStatus();
+  const std::string affinity_key = proto.affinity_key().empty()
+                                       ? name.substr(kSessions.size() + 1)
+                                       : proto.affinity_key();
+  return std::make_shared<Session>(std::move(name), proto.skeleton(),
+                                   affinity_key, *std::move(problem),
+                                   *std::move(parts), now);
+}
+
+absl::Status CreateSession(ServiceState& state,
+                           const v1::CreateSessionRequest& request,
+                           v1::Session* response) {
+  if (state.draining) {
+    return absl::UnavailableError("the server is going away");
+  }
+  Violations violations;
+  if (!request.session_id().empty()) {
+    violations.AddStatus("",
+                         CheckResourceId("session_id", request.session_id()));
+  }
+  violations.AddStatus("", CheckRequestId(request.request_id()));
+  violations.AddStatus("", CheckResourceName("session.skeleton", kSkeletons,
+                                             request.session().skeleton()));
+  violations.AddStatus("", CheckAffinityKey(request.session().affinity_key()));
+  if (!violations.empty()) return violations.ToStatus();
+
+  const absl::Time now = absl::Now();
+  absl::StatusOr<std::shared_ptr<Session>> session = state.sessions.Create(
+      kDefaultTenant, request.session_id(), request.request_id(), now,
+      [&](std::string name) {
+        return MakeSession(state, request.session(), std::move(name), now);
+      });
+  if (!session.ok()) return session.status();
+  ToProto(**session, state.draining, response);
+  return absl::OkStatus();
+}
+
+absl::Status GetSession(const ServiceState& state,
+                        const v1::GetSessionRequest& request,
+                        v1::Session* response) {
+  absl::StatusOr<std::shared_ptr<Session>> session =
+      FindSession(state, "name", request.name());
+  if (!session.ok()) return session.status();
+  ToProto(**session, state.draining, response);
+  return absl::OkStatus();
+}
+
+absl::Status ListSessions(const ServiceState& state,
+                          const v1::ListSessionsRequest& request,
+                          v1::ListSessionsResponse* response) {
+  absl::StatusOr<size_t> size = PageSize(request.page_size());
+  if (!size.ok()) return size.status();
+  const std::vector<std::shared_ptr<Session>> page = state.sessions.List(
+      kDefaultTenant, request.page_token(), *size, absl::Now());
+  for (const std::shared_ptr<Session>& session : page) {
+    ToProto(*session, state.draining, response->add_sessions());
+  }
+  if (page.size() == *size) {
+    response->set_next_page_token(page.back()->name());
+  }
+  return absl::OkStatus();
+}
+
+absl::Status UpdateSession(const ServiceState& state,
+                           const v1::UpdateSessionRequest& request,
+                           v1::Session* response) {
+  absl::StatusOr<std::shared_ptr<Session>> session =
+      FindSession(state, "session.name", request.session().name());
+  if (!session.ok()) return session.status();
+  absl::StatusOr<std::optional<int64_t>> revision =
+      RevisionOf(request.session().etag());
+  if (!revision.ok()) return revision.status();
+  const absl::Status status = (*session)->Update(
+      [&](SessionState& parts) {
+        return UpdateState(request, (*session)->skeleton(),
+                           state.options.limits, parts);
+      },
+      *revision, absl::Now());
+  if (!status.ok()) return status;
+  ToProto(**session, state.draining, response);
+  return absl::OkStatus();
+}
+
+absl::Status DeleteSession(ServiceState& state,
+                           const v1::DeleteSessionRequest& request) {
+  absl::Status status = CheckResourceName("name", kSessions, request.name());
+  if (!status.ok()) return status;
+  status = state.sessions.Delete(kDefaultTenant, request.name());
+  if (request.allow_missing() && absl::IsNotFound(status)) {
+    return absl::OkStatus();
+  }
+  return status;
+}
+
+absl::Status SolveSession(const ServiceState& state, Solver& solver,
+                          const v1::SolveSessionRequest& request,
+                          v1::SolveSessionResponse* response) {
+  absl::StatusOr<std::shared_ptr<Session>> session =
+      FindSession(state, "name", request.name());
+  if (!session.ok()) return session.status();
+  InputFrame frame;
+  if (request.has_goal_patch()) {
+    frame.patch = [&](absl::Span<const Goal> goals) {
+      return convert::Merge(goals, request.goal_patch());
+    };
+  }
+  if (absl::Status status = (*session)->Apply(kUnaryDriver, frame, absl::Now());
+      !status.ok()) {
+    return status;
+  }
+  SolvedFrame solved;
+  if (absl::Status status =
+          (*session)->Solve(kUnaryDriver, solver, true, solved);
+      !status.ok()) {
+    return status;
+  }
+  convert::ToProto(solved.positions, response->mutable_pose());
+  convert::ToProto(solved.report, solved.detail, solved.solve_duration,
+                   response->mutable_report());
+  if (request.include_joint_frames()) {
+    WorldTransforms frames;
+    ForwardKinematics((*session)->skeleton(), solved.positions,
+                      (*session)->Snapshot().state.world_from_skeleton, frames);
+    convert::ToProto(frames, response->mutable_joint_frames());
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void ServeSessions(Service* service, ServiceState* state, IoThread* thread) {
+  ServeUnary(
+      service, &Service::RequestCreateSession,
+      [state](Solver&, const v1::CreateSessionRequest& request,
+              v1::Session* response) {
+        return CreateSession(*state, request, response);
+      },
+      state, thread);
+  ServeUnary(
+      service, &Service::RequestGetSession,
+      [state](Solver&, const v1::GetSessionRequest& request,
+              v1::Session* response) {
+        return GetSession(*state, request, response);
+      },
+      state, thread);
+  ServeUnary(
+      service, &Service::RequestListSessions,
+      [state](Solver&, const v1::ListSessionsRequest& request,
+              v1::ListSessionsResponse* response) {
+        return ListSessions(*state, request, response);
+      },
+      state, thread);
+  ServeUnary(
+      service, &Service::RequestUpdateSession,
+      [state](Solver&, const v1::UpdateSessionRequest& request,
+              v1::Session* response) {
+        return UpdateSession(*state, request, response);
+      },
+      state, thread);
+  ServeUnary(
+      service, &Service::RequestDeleteSession,
+      [state](Solver&, const v1::DeleteSessionRequest& request,
+              google::protobuf::Empty*) {
+        return DeleteSession(*state, request);
+      },
+      state, thread);
+  ServeUnary(
+      service, &Service::RequestSolveSession,
+      [state](Solver& solver, const v1::SolveSessionRequest& request,
+              v1::SolveSessionResponse* response) {
+        return SolveSession(*state, solver, request, response);
+      },
+      state, thread);
+  StreamingSolveCall::Start(service, state, thread);
+  WatchSessionCall::Start(service, state, thread);
+}
+
+}  // namespace gelenk::server

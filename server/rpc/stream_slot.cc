@@ -1,0 +1,210 @@
+#include "server/rpc/stream_slot.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "convert/geometry.h"
+#include "convert/goal.h"
+#include "convert/pose.h"
+#include "convert/solver.h"
+#include "gelenk/base/violations.h"
+#include "server/rpc/continuation.h"
+#include "server/rpc/session_message.h"
+#include "server/rpc/status.h"
+
+namespace gelenk::server {
+namespace {
+
+absl::Status CheckAttach(const v1::AttachSession& request) {
+  Violations violations;
+  violations.AddStatus(
+      "", CheckResourceName("attach.session", kSessions, request.session()));
+  if (request.slot() < 0) {
+    violations.Add("attach.slot",
+                   absl::StrCat("want 0 or more, got ", request.slot()));
+  }
+  if (request.report_interval() < 0 || request.continuation_interval() < 0) {
+    violations.Add("attach", "intervals are 0 or more");
+  }
+  return violations.ToStatus();
+}
+
+absl::Status FrameFromProto(const v1::TargetFrame& proto, InputFrame& frame) {
+  frame.Clear();
+  frame.sequence_number = proto.sequence_number();
+  Violations violations;
+  for (int i = 0; i < proto.targets_size(); ++i) {
+    const v1::GoalTarget& target = proto.targets(i);
+    GoalUpdate update;
+    update.goal_index = target.goal_index();
+    if (target.has_weight()) update.weight = target.weight();
+    const bool weight_only =
+        target.target_case() == v1::GoalTarget::TARGET_NOT_SET &&
+        target.has_weight();
+    if (!weight_only) {
+      GoalTarget value;
+      if (absl::Status status = convert::FromProto(target, &value);
+          !status.ok()) {
+        violations.AddStatus(absl::StrCat("targets[", i, "]"), status);
+        continue;
+      }
+      update.target = value;
+    }
+    frame.updates.push_back(update);
+  }
+  if (proto.has_goal_patch()) {
+    frame.patch = [&patch = proto.goal_patch()](absl::Span<const Goal> goals) {
+      return convert::Merge(goals, patch);
+    };
+  }
+  if (proto.has_world_from_skeleton()) {
+    frame.world_from_skeleton = convert::FromProto(proto.world_from_skeleton());
+  }
+  return violations.ToStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<StreamSlot>> StreamSlot::Attach(
+    ServiceState& state, const v1::AttachSession& request, absl::Time now,
+    v1::StreamEvent* event) {
+  if (absl::Status status = CheckAttach(request); !status.ok()) return status;
+  absl::StatusOr<std::shared_ptr<Session>> session =
+      state.sessions.Find(kDefaultTenant, request.session(), now);
+  if (!session.ok()) return session.status();
+  const DriverId driver = state.next_driver++;
+  if (absl::Status status = (*session)->Claim(driver, request.take_over(), now);
+      !status.ok()) {
+    return status;
+  }
+  // From here on the slot gives the session free when something fails.
+  std::unique_ptr<StreamSlot> slot(
+      new StreamSlot(state, *session, driver, request));
+  std::string inexact_because;
+  if (request.has_resume_from()) {
+    absl::Status status = slot->Resume(
+        request.resume_from(), state.options.instruction_set, &inexact_because);
+    if (!status.ok()) return status;
+  }
+  event->set_kind(v1::StreamEvent::KIND_ATTACHED);
+  event->set_slot(request.slot());
+  event->set_sequence_number((*session)->sequence_number());
+  if (!inexact_because.empty()) {
+    ToProto(absl::FailedPreconditionError(inexact_because),
+            event->mutable_status());
+  }
+  return slot;
+}
+
+StreamSlot::StreamSlot(const ServiceState& state,
+                       std::shared_ptr<Session> session, DriverId driver,
+                       const v1::AttachSession& request)
+    : session_(std::move(session)),
+      driver_(driver),
+      level_(state.options.instruction_set),
+      slot_(request.slot()),
+      every_frame_(request.frame_policy() == v1::FRAME_POLICY_EVERY_FRAME),
+      include_joint_frames_(request.include_joint_frames()),
+      report_interval_(std::max(1, request.report_interval())),
+      continuation_interval_(std::max(1, request.continuation_interval())) {}
+
+StreamSlot::~StreamSlot() { session_->Release(driver_); }
+
+size_t StreamSlot::answer_bytes() const {
+  constexpr size_t kReport = 512;
+  const size_t frames =
+      include_joint_frames_
+          ? 7 * sizeof(float) * session_->skeleton().joint_count()
+          : 0;
+  return kReport + frames +
+         sizeof(double) * session_->skeleton().position_count();
+}
+
+absl::Status StreamSlot::Resume(const v1::PoseFrame& from, InstructionSet level,
+                                std::string* inexact_because) {
+  absl::StatusOr<Eigen::VectorXd> positions =
+      convert::FromProto(session_->skeleton(), from.pose());
+  if (!positions.ok()) {
+    Violations violations;
+    violations.AddStatus("resume_from.pose", positions.status());
+    return violations.ToStatus();
+  }
+  if (from.continuation().empty()) {
+    return session_->Resume(driver_, *positions, from.sequence_number(),
+                            nullptr, nullptr);
+  }
+  absl::StatusOr<Continuation> continuation =
+      ReadContinuation(from.continuation(), level);
+  if (!continuation.ok()) return continuation.status();
+  *inexact_because = continuation->inexact_because;
+  return session_->Resume(driver_, *positions, from.sequence_number(),
+                          &continuation->goals,
+                          &continuation->world_from_skeleton);
+}
+
+absl::Status StreamSlot::Take(const v1::TargetFrame& frame, absl::Time now) {
+  if (absl::Status status = FrameFromProto(frame, input_); !status.ok()) {
+    // The number is used up all the same, so that answers stay in order.
+    InputFrame number_only;
+    number_only.sequence_number = frame.sequence_number();
+    absl::Status numbered = session_->Apply(driver_, number_only, now);
+    return numbered.ok() ? status : numbered;
+  }
+  if (absl::Status status = session_->Apply(driver_, input_, now);
+      !status.ok()) {
+    return status;
+  }
+  ++taken_;
+  sequence_number_ = frame.sequence_number();
+  has_capture_time_ = frame.has_capture_time();
+  if (has_capture_time_) capture_time_ = frame.capture_time();
+  return absl::OkStatus();
+}
+
+absl::Status StreamSlot::Answer(LevenbergMarquardtSolver& solver,
+                                absl::Time read_time, v1::PoseFrame* answer) {
+  const bool whole = answered_ % report_interval_ == 0;
+  if (absl::Status status = session_->Solve(driver_, solver, whole, solved_);
+      !status.ok()) {
+    return status;
+  }
+  answer->set_slot(slot_);
+  answer->set_sequence_number(sequence_number_);
+  if (has_capture_time_) *answer->mutable_capture_time() = capture_time_;
+  convert::ToProto(solved_.positions, answer->mutable_pose());
+  convert::ToProto(solved_.report, solved_.detail, solved_.solve_duration,
+                   answer->mutable_report());
+  answer->set_merged_frame_count(taken_ - 1);
+  AddExtras(answer);
+  ToProto(absl::Now() - read_time, answer->mutable_server_duration());
+  taken_ = 0;
+  ++answered_;
+  return absl::OkStatus();
+}
+
+void StreamSlot::AddExtras(v1::PoseFrame* answer) {
+  if (include_joint_frames_) {
+    ForwardKinematics(session_->skeleton(), solved_.positions,
+                      session_->Snapshot().state.world_from_skeleton, frames_);
+    convert::ToProto(frames_, answer->mutable_joint_frames());
+  }
+  if (solved_.needs_continuation && answered_ % continuation_interval_ == 0) {
+    answer->set_continuation(WriteContinuation(*session_, level_));
+  }
+}
+
+void StreamSlot::Refuse(const v1::TargetFrame& frame, const absl::Status& why,
+                        v1::PoseFrame* answer) {
+  answer->set_slot(slot_);
+  answer->set_sequence_number(frame.sequence_number());
+  if (frame.has_capture_time()) {
+    *answer->mutable_capture_time() = frame.capture_time();
+  }
+  ToProto(why, answer->mutable_status());
+  session_->CopyPositions(solved_.positions);
+  convert::ToProto(solved_.positions, answer->mutable_pose());
+}
+
+}  // namespace gelenk::server

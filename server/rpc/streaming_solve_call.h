@@ -1,0 +1,122 @@
+// SessionService.StreamingSolve: frames in, frames out.
+//
+// One stream, owned by one I/O thread: at most one read and one write are under
+// way. A message's frames are solved in order; answers that are ready leave in
+// one message. With too many unsent answers the stream stops reading, and
+// HTTP/2 flow control holds the sender. Solves that may take long are done on a
+// worker while the stream stands still.
+#ifndef GELENK_SERVER_RPC_STREAMING_SOLVE_CALL_H_
+#define GELENK_SERVER_RPC_STREAMING_SOLVE_CALL_H_
+
+#include <google/protobuf/arena.h>
+#include <grpcpp/alarm.h>
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/async_stream.h>
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "absl/time/time.h"
+#include "gelenk/v1/session_service.grpc.pb.h"
+#include "server/rpc/completion.h"
+#include "server/rpc/io_thread.h"
+#include "server/rpc/message_arena.h"
+#include "server/rpc/service_state.h"
+#include "server/rpc/stream_slot.h"
+
+namespace gelenk::server {
+
+class StreamingSolveCall final : public Ticking {
+ public:
+  // Takes the next stream on `thread`, and the ones after it.
+  static void Start(v1::SessionService::AsyncService* service,
+                    ServiceState* state, IoThread* thread);
+
+  void Tick(absl::Time now) override;
+
+ private:
+  StreamingSolveCall(v1::SessionService::AsyncService* service,
+                     ServiceState* state, IoThread* thread);
+  ~StreamingSolveCall() override;
+
+  void OnStarted(bool ok);
+  void OnRead(bool ok);
+  void OnWritten(bool ok);
+  void OnWorked(bool ok);
+  void OnFinished(bool ok);
+
+  // Goes on with whatever can be gone on with.
+  void Advance();
+  // Works through the message that was read, as far as answers may pile up.
+  // False when a heavy solve comes up and `heavy_allowed` is not.
+  bool Consume(LevenbergMarquardtSolver& solver, bool heavy_allowed);
+  bool ConsumeFrame(const v1::TargetFrame& frame,
+                    LevenbergMarquardtSolver& solver, bool heavy_allowed);
+  // Solves what LATEST_WINS slots have merged. False as in Consume.
+  bool AnswerMerged(LevenbergMarquardtSolver& solver, bool heavy_allowed);
+  void ConsumeOnWorker();
+
+  void Attach(const v1::AttachSession& request);
+  void Detach(int slot, const absl::Status& why);
+  void AnswerSlot(int slot, StreamSlot& stream_slot,
+                  LevenbergMarquardtSolver& solver);
+  v1::StreamEvent* AddEvent(v1::StreamEvent::Kind kind, int slot);
+  v1::PoseFrame* AddAnswer(size_t bytes);
+
+  bool IsFull() const;
+  void CheckSlots();
+  void StartRead();
+  void StartWrite();
+  void Close(const absl::Status& why);
+  void Finish();
+
+  v1::SessionService::AsyncService* const service_;
+  ServiceState* const state_;
+  IoThread* const thread_;
+  CallCount count_;
+  grpc::ServerContext context_;
+  grpc::ServerAsyncReaderWriter<v1::StreamingSolveResponse,
+                                v1::StreamingSolveRequest>
+      stream_{&context_};
+  Operation<StreamingSolveCall> started_{this, &StreamingSolveCall::OnStarted};
+  Operation<StreamingSolveCall> read_{this, &StreamingSolveCall::OnRead};
+  Operation<StreamingSolveCall> written_{this, &StreamingSolveCall::OnWritten};
+  Operation<StreamingSolveCall> worked_{this, &StreamingSolveCall::OnWorked};
+  Operation<StreamingSolveCall> finished_{this,
+                                          &StreamingSolveCall::OnFinished};
+  grpc::Alarm alarm_;
+  std::unique_ptr<LimitedPlace> place_;
+
+  std::map<int, std::unique_ptr<StreamSlot>> slots_;
+  MessageArena<v1::StreamingSolveRequest> request_;
+  // One is filled while the other is on its way.
+  MessageArena<v1::StreamingSolveResponse> responses_[2];
+  int filling_ = 0;
+  size_t filled_bytes_ = 0;
+
+  // Where Consume stands in request_.
+  bool has_message_ = false;
+  bool attached_ = false;
+  int next_frame_ = 0;
+  absl::Time read_time_;
+  absl::Time burst_begin_;
+
+  bool ticking_ = false;
+  bool reading_ = false;
+  bool writing_ = false;
+  bool working_ = false;
+  bool finishing_ = false;
+  bool finished_call_ = false;
+  bool half_closed_ = false;
+  bool broken_ = false;
+  bool said_draining_ = false;
+  bool closing_ = false;
+  absl::Time closing_since_;
+  absl::Status close_status_;
+  absl::Time last_write_;
+};
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_RPC_STREAMING_SOLVE_CALL_H_

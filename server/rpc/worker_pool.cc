@@ -1,0 +1,45 @@
+#include "server/rpc/worker_pool.h"
+
+#include <utility>
+
+namespace gelenk::server {
+
+WorkerPool::WorkerPool(int threads, int max_waiting,
+                       InstructionSet instruction_set)
+    : max_waiting_(max_waiting) {
+  for (int i = 0; i < threads; ++i) {
+    threads_.emplace_back([this, instruction_set] { Loop(instruction_set); });
+  }
+}
+
+WorkerPool::~WorkerPool() {
+  {
+    absl::MutexLock lock(&mutex_);
+    stopping_ = true;
+  }
+  for (std::thread& thread : threads_) thread.join();
+}
+
+bool WorkerPool::Submit(Work work) {
+  absl::MutexLock lock(&mutex_);
+  if (waiting_.size() >= max_waiting_) return false;
+  waiting_.push_back(std::move(work));
+  return true;
+}
+
+void WorkerPool::Loop(InstructionSet instruction_set) {
+  LevenbergMarquardtSolver solver(instruction_set);
+  for (;;) {
+    Work work;
+    {
+      absl::MutexLock lock(&mutex_);
+      mutex_.Await(absl::Condition(this, &WorkerPool::HasWork));
+      if (waiting_.empty()) return;
+      work = std::move(waiting_.front());
+      waiting_.pop_front();
+    }
+    work(solver);
+  }
+}
+
+}  // namespace gelenk::server

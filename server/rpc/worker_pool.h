@@ -1,0 +1,44 @@
+// A few threads for work that streams must not wait behind: unary calls, cold
+// solves, imports.
+#ifndef GELENK_SERVER_RPC_WORKER_POOL_H_
+#define GELENK_SERVER_RPC_WORKER_POOL_H_
+
+#include <deque>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/synchronization/mutex.h"
+#include "gelenk/ik/levenberg_marquardt_solver.h"
+
+namespace gelenk::server {
+
+class WorkerPool {
+ public:
+  // Gets the solver of the thread that runs it.
+  using Work = std::function<void(LevenbergMarquardtSolver&)>;
+
+  WorkerPool(int threads, int max_waiting, InstructionSet instruction_set);
+  // Runs what waits, then joins.
+  ~WorkerPool();
+
+  // False, and `work` is not run, when too much waits already.
+  [[nodiscard]] bool Submit(Work work);
+
+ private:
+  void Loop(InstructionSet instruction_set);
+  bool HasWork() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+    return stopping_ || !waiting_.empty();
+  }
+
+  const size_t max_waiting_;
+  absl::Mutex mutex_;
+  std::deque<Work> waiting_ ABSL_GUARDED_BY(mutex_);
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_RPC_WORKER_POOL_H_

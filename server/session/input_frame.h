@@ -1,0 +1,44 @@
+// What a driver tells a session before a solve.
+#ifndef GELENK_SERVER_SESSION_INPUT_FRAME_H_
+#define GELENK_SERVER_SESSION_INPUT_FRAME_H_
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+#include "gelenk/ik/goal.h"
+#include "gelenk/math/rigid_transform.h"
+
+namespace gelenk::server {
+
+// New target, new weight, or both, of one goal.
+struct GoalUpdate {
+  int goal_index = 0;
+  std::optional<GoalTarget> target;
+  std::optional<double> weight;
+};
+
+// Reused from frame to frame, so that its memory is.
+struct InputFrame {
+  // Strictly increasing; unset for calls that are not numbered.
+  std::optional<int64_t> sequence_number;
+  // Rare: makes the new goals from the present ones, applied first.
+  std::function<absl::StatusOr<std::vector<Goal>>(absl::Span<const Goal>)>
+      patch;
+  std::vector<GoalUpdate> updates;
+  std::optional<RigidTransform> world_from_skeleton;
+
+  void Clear() {
+    sequence_number.reset();
+    patch = nullptr;
+    updates.clear();
+    world_from_skeleton.reset();
+  }
+};
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_SESSION_INPUT_FRAME_H_

@@ -1,0 +1,312 @@
+#include "server/session/session.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "gelenk/base/violations.h"
+#include "gelenk/math/rotation.h"
+#include "gelenk/skeleton/joint_check.h"
+
+namespace gelenk::server {
+namespace {
+
+absl::Status CheckSequence(const InputFrame& frame, int64_t newest) {
+  if (!frame.sequence_number || *frame.sequence_number > newest) {
+    return absl::OkStatus();
+  }
+  Violations violations;
+  violations.Add("sequence_number",
+                 absl::StrCat("want more than ", newest, ", got ",
+                              *frame.sequence_number));
+  return violations.ToStatus();
+}
+
+// Checks every update of `frame` against `problem`, normalising as it goes.
+absl::Status CheckUpdates(const IkProblem& problem, InputFrame& frame) {
+  Violations violations;
+  for (size_t i = 0; i < frame.updates.size(); ++i) {
+    GoalUpdate& update = frame.updates[i];
+    absl::Status status = absl::OkStatus();
+    if (update.target) {
+      status = problem.CheckTarget(update.goal_index, *update.target);
+    } else {
+      GoalTarget none;
+      if (update.goal_index < 0 ||
+          update.goal_index >= static_cast<int>(problem.goals().size())) {
+        status = problem.CheckTarget(update.goal_index, none);
+      }
+    }
+    if (status.ok() && update.weight) {
+      status = IkProblem::CheckWeight(*update.weight);
+    }
+    if (!status.ok()) {
+      violations.AddStatus(absl::StrCat("targets[", i, "]"), status);
+    }
+  }
+  if (frame.world_from_skeleton) {
+    CheckAndNormalize("world_from_skeleton", *frame.world_from_skeleton,
+                      violations);
+  }
+  return violations.ToStatus();
+}
+
+}  // namespace
+
+Session::Session(std::string name, std::string skeleton_name,
+                 std::string affinity_key, IkProblem problem,
+                 SessionState state, absl::Time now)
+    : name_(std::move(name)),
+      skeleton_name_(std::move(skeleton_name)),
+      affinity_key_(std::move(affinity_key)),
+      skeleton_(problem.shared_skeleton()),
+      create_time_(now),
+      problem_(std::move(problem)),
+      options_(state.options),
+      positions_(std::move(state.positions)),
+      cold_(state.cold),
+      idle_ttl_(state.idle_ttl),
+      last_driven_(now) {
+  problem_.SetWorldFromSkeleton(state.world_from_skeleton);
+}
+
+absl::Status Session::Claim(DriverId driver, bool take_over, absl::Time now) {
+  absl::MutexLock lock(&mutex_);
+  if (!ended_.ok()) return ended_;
+  if (driver_ && *driver_ != driver && !take_over) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "session: ", name_, " has a driver; attach with take_over to take it"));
+  }
+  driver_ = driver;
+  last_driven_ = now;
+  return absl::OkStatus();
+}
+
+void Session::Release(DriverId driver) {
+  absl::MutexLock lock(&mutex_);
+  if (driver_ == driver) driver_.reset();
+}
+
+absl::Status Session::CheckDriver(DriverId driver) const {
+  absl::MutexLock lock(&mutex_);
+  return CheckDriverLocked(driver);
+}
+
+absl::Status Session::CheckDriverLocked(DriverId driver) const {
+  if (!ended_.ok()) return ended_;
+  if (driver == kUnaryDriver) {
+    if (!driver_) return absl::OkStatus();
+    return absl::FailedPreconditionError(
+        absl::StrCat("name: ", name_, " is driven by a stream"));
+  }
+  if (driver_ == driver) return absl::OkStatus();
+  return absl::AbortedError(
+      absl::StrCat("session: ", name_, " was taken over by another driver"));
+}
+
+absl::Status Session::Resume(DriverId driver, const Eigen::VectorXd& positions,
+                             int64_t sequence_number,
+                             const std::vector<Goal>* goals,
+                             const RigidTransform* world_from_skeleton) {
+  absl::MutexLock lock(&mutex_);
+  if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
+    return status;
+  }
+  RigidTransform place = world_from_skeleton ? *world_from_skeleton
+                                             : problem_.world_from_skeleton();
+  Violations violations;
+  CheckAndNormalize("world_from_skeleton", place, violations);
+  if (!violations.empty()) return violations.ToStatus();
+  if (goals != nullptr) {
+    absl::StatusOr<IkProblem> problem = IkProblem::Create(skeleton_, *goals);
+    if (!problem.ok()) return problem.status();
+    problem_ = *std::move(problem);
+    // The driver cannot know these from its create request.
+    drifted_ = true;
+    ++revision_;
+  }
+  problem_.SetWorldFromSkeleton(place);
+  positions_ = positions;
+  sequence_number_ = sequence_number;
+  cold_ = false;
+  ++version_;
+  return absl::OkStatus();
+}
+
+absl::Status Session::Apply(DriverId driver, InputFrame& frame,
+                            absl::Time now) {
+  absl::MutexLock lock(&mutex_);
+  if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
+    return status;
+  }
+  if (absl::Status status = CheckSequence(frame, sequence_number_);
+      !status.ok()) {
+    return status;
+  }
+  if (frame.sequence_number) sequence_number_ = *frame.sequence_number;
+  last_driven_ = now;
+
+  std::optional<IkProblem> patched;
+  if (frame.patch) {
+    absl::StatusOr<std::vector<Goal>> goals = frame.patch(problem_.goals());
+    if (!goals.ok()) return goals.status();
+    absl::StatusOr<IkProblem> problem =
+        IkProblem::Create(skeleton_, *std::move(goals));
+    if (!problem.ok()) return problem.status();
+    patched = *std::move(problem);
+    patched->SetWorldFromSkeleton(problem_.world_from_skeleton());
+  }
+  if (absl::Status status = CheckUpdates(patched ? *patched : problem_, frame);
+      !status.ok()) {
+    return status;
+  }
+
+  // Nothing can fail from here on.
+  if (patched) {
+    problem_ = *std::move(patched);
+    drifted_ = true;
+    ++revision_;
+  }
+  // Counted, not compared one by one: a goal named twice and another one not at
+  // all would be a strange client, and gets a continuation too few.
+  size_t named = 0;
+  for (const GoalUpdate& update : frame.updates) {
+    if (update.target) {
+      problem_.SetTarget(update.goal_index, *update.target);
+      ++named;
+    }
+    if (update.weight) {
+      problem_.SetWeight(update.goal_index, *update.weight);
+      drifted_ = true;
+    }
+  }
+  partly_named_ = named < problem_.goals().size();
+  if (frame.world_from_skeleton) {
+    problem_.SetWorldFromSkeleton(*frame.world_from_skeleton);
+    drifted_ = true;
+  }
+  return absl::OkStatus();
+}
+
+bool Session::IsHeavy() const {
+  absl::MutexLock lock(&mutex_);
+  const SolveStart start = cold_ ? SolveStart::kCold : SolveStart::kWarm;
+  return RestartBudget(options_, start) > 0 ||
+         options_.detail == ReportDetail::kDiagnosis;
+}
+
+absl::Status Session::Solve(DriverId driver, LevenbergMarquardtSolver& solver,
+                            bool whole, SolvedFrame& frame) {
+  absl::MutexLock lock(&mutex_);
+  if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
+    return status;
+  }
+  SolverOptions options = options_;
+  if (!whole) options.detail = ReportDetail::kBrief;
+  const int64_t begin = absl::GetCurrentTimeNanos();
+  solver.Solve(problem_, options, cold_ ? SolveStart::kCold : SolveStart::kWarm,
+               positions_, frame.report);
+  frame.solve_duration = absl::Nanoseconds(absl::GetCurrentTimeNanos() - begin);
+  cold_ = false;
+  ++version_;
+  frame.positions = positions_;
+  frame.detail = options.detail;
+  frame.needs_continuation = drifted_ || partly_named_;
+  return absl::OkStatus();
+}
+
+void Session::CopyPositions(Eigen::VectorXd& positions) const {
+  absl::MutexLock lock(&mutex_);
+  positions = positions_;
+}
+
+int64_t Session::sequence_number() const {
+  absl::MutexLock lock(&mutex_);
+  return sequence_number_;
+}
+
+SessionSnapshot Session::Snapshot() const {
+  absl::MutexLock lock(&mutex_);
+  SessionSnapshot snapshot;
+  snapshot.state.goals.assign(problem_.goals().begin(), problem_.goals().end());
+  snapshot.state.options = options_;
+  snapshot.state.positions = positions_;
+  snapshot.state.cold = cold_;
+  snapshot.state.world_from_skeleton = problem_.world_from_skeleton();
+  snapshot.state.idle_ttl = idle_ttl_;
+  snapshot.expire_time = last_driven_ + idle_ttl_;
+  snapshot.revision = revision_;
+  return snapshot;
+}
+
+absl::Status Session::Update(
+    const std::function<absl::Status(SessionState&)>& change,
+    std::optional<int64_t> revision, absl::Time now) {
+  SessionSnapshot before = Snapshot();
+  if (revision && *revision != before.revision) {
+    return absl::AbortedError(
+        absl::StrCat("etag: ", name_, " was changed meanwhile"));
+  }
+  SessionState state = before.state;
+  if (absl::Status status = change(state); !status.ok()) return status;
+  absl::StatusOr<IkProblem> problem =
+      IkProblem::Create(skeleton_, std::move(state.goals));
+  if (!problem.ok()) return problem.status();
+  problem->SetWorldFromSkeleton(state.world_from_skeleton);
+
+  absl::MutexLock lock(&mutex_);
+  if (absl::Status status = CheckDriverLocked(kUnaryDriver); !status.ok()) {
+    return status;
+  }
+  if (revision_ != before.revision) {
+    return absl::AbortedError(
+        absl::StrCat("etag: ", name_, " was changed meanwhile"));
+  }
+  problem_ = *std::move(problem);
+  options_ = state.options;
+  positions_ = std::move(state.positions);
+  cold_ = state.cold;
+  idle_ttl_ = state.idle_ttl;
+  last_driven_ = now;
+  drifted_ = true;
+  ++revision_;
+  ++version_;
+  return absl::OkStatus();
+}
+
+bool Session::CopyIfNewer(uint64_t& version, Eigen::VectorXd& positions,
+                          RigidTransform& world_from_skeleton,
+                          int64_t& sequence_number) const {
+  absl::MutexLock lock(&mutex_);
+  if (version_ == version) return false;
+  version = version_;
+  positions = positions_;
+  world_from_skeleton = problem_.world_from_skeleton();
+  sequence_number =
+      sequence_number_ > 0 ? sequence_number_ : static_cast<int64_t>(version_);
+  return true;
+}
+
+void Session::End(absl::Status why) {
+  absl::MutexLock lock(&mutex_);
+  if (ended_.ok()) ended_ = std::move(why);
+}
+
+absl::Status Session::ended() const {
+  absl::MutexLock lock(&mutex_);
+  return ended_;
+}
+
+bool Session::IsExpired(absl::Time now) const {
+  absl::MutexLock lock(&mutex_);
+  return now >= last_driven_ + idle_ttl_;
+}
+
+size_t Session::ByteSize() const {
+  absl::MutexLock lock(&mutex_);
+  return sizeof(*this) + name_.capacity() + skeleton_name_.capacity() +
+         affinity_key_.capacity() + problem_.ByteSize() - sizeof(problem_) +
+         positions_.size() * sizeof(double);
+}
+
+}  // namespace gelenk::server

@@ -1,0 +1,159 @@
+// A warm solver: one skeleton, its goals and its current pose.
+//
+// Thread-safe; a driver solves on its own thread, everybody else gets copies.
+// Time is passed in. Errors are absl::Status naming field and value; after any
+// error the session is as it was.
+#ifndef GELENK_SERVER_SESSION_SESSION_H_
+#define GELENK_SERVER_SESSION_SESSION_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/status.h"
+#include "absl/synchronization/mutex.h"
+#include "absl/time/time.h"
+#include "gelenk/ik/ik_problem.h"
+#include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/skeleton/skeleton.h"
+#include "server/session/input_frame.h"
+
+namespace gelenk::server {
+
+// Who drives a session: a stream's slot. 0 is a unary call.
+using DriverId = uint64_t;
+inline constexpr DriverId kUnaryDriver = 0;
+
+// What a session is made of, and what UpdateSession replaces parts of.
+struct SessionState {
+  std::vector<Goal> goals;
+  SolverOptions options;
+  Eigen::VectorXd positions;
+  // Nothing was ever solved from `positions`: the next solve is a cold start.
+  bool cold = true;
+  RigidTransform world_from_skeleton;
+  absl::Duration idle_ttl = absl::Minutes(10);
+};
+
+// A copy of a session for those who read it.
+struct SessionSnapshot {
+  SessionState state;
+  absl::Time expire_time;
+  int64_t revision = 0;
+};
+
+// What a solve gave; reused from frame to frame.
+struct SolvedFrame {
+  Eigen::VectorXd positions;
+  SolveReport report;
+  ReportDetail detail = ReportDetail::kBrief;
+  absl::Duration solve_duration;
+  // The session holds more than a driver could tell from its last frame and its
+  // create request: give it a continuation.
+  bool needs_continuation = false;
+};
+
+class Session {
+ public:
+  // `state.positions` has passed CheckPositions, `problem` was made of
+  // `state.goals`.
+  Session(std::string name, std::string skeleton_name, std::string affinity_key,
+          IkProblem problem, SessionState state, absl::Time now);
+
+  const std::string& name() const { return name_; }
+  const std::string& skeleton_name() const { return skeleton_name_; }
+  const std::string& affinity_key() const { return affinity_key_; }
+  const Skeleton& skeleton() const { return *skeleton_; }
+  absl::Time create_time() const { return create_time_; }
+
+  // Makes `driver` the one who may solve. FAILED_PRECONDITION when there is
+  // another one and `take_over` is not set; who loses it is told by
+  // CheckDriver.
+  absl::Status Claim(DriverId driver, bool take_over, absl::Time now);
+  void Release(DriverId driver);
+
+  // OK while `driver` drives; ABORTED after it was taken over; the reason after
+  // End.
+  absl::Status CheckDriver(DriverId driver) const;
+
+  // Puts the session where a driver last saw it: pose and sequence number, and
+  // goals and place when given.
+  absl::Status Resume(DriverId driver, const Eigen::VectorXd& positions,
+                      int64_t sequence_number, const std::vector<Goal>* goals,
+                      const RigidTransform* world_from_skeleton);
+
+  // Takes a frame's targets, without solving. A frame with any fault changes
+  // nothing but uses up its sequence number. Allocates nothing without a patch.
+  absl::Status Apply(DriverId driver, InputFrame& frame, absl::Time now);
+
+  // True when the next solve may take long enough to be no guest of an I/O
+  // thread: it may restart, or diagnoses.
+  bool IsHeavy() const;
+
+  // Solves for the present targets. `whole` asks for the whole report.
+  absl::Status Solve(DriverId driver, LevenbergMarquardtSolver& solver,
+                     bool whole, SolvedFrame& frame);
+
+  // The last pose, without solving.
+  void CopyPositions(Eigen::VectorXd& positions) const;
+
+  // Newest sequence number; 0 before the first.
+  int64_t sequence_number() const;
+
+  SessionSnapshot Snapshot() const;
+
+  // Applies `change` to a copy of the state, checks it, and takes it.
+  // ABORTED when `revision` is given and is not the present one,
+  // FAILED_PRECONDITION while a stream drives.
+  absl::Status Update(const std::function<absl::Status(SessionState&)>& change,
+                      std::optional<int64_t> revision, absl::Time now);
+
+  // For viewers: true when there is a pose newer than `version`, which is then
+  // copied, with its sequence number (or the count of solves without one).
+  bool CopyIfNewer(uint64_t& version, Eigen::VectorXd& positions,
+                   RigidTransform& world_from_skeleton,
+                   int64_t& sequence_number) const;
+
+  // Ends the session for good; drivers and viewers are told `why`.
+  void End(absl::Status why);
+  // OK while it lives.
+  absl::Status ended() const;
+
+  bool IsExpired(absl::Time now) const;
+  size_t ByteSize() const;
+
+ private:
+  absl::Status CheckDriverLocked(DriverId driver) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+
+  const std::string name_;
+  const std::string skeleton_name_;
+  const std::string affinity_key_;
+  const std::shared_ptr<const Skeleton> skeleton_;
+  const absl::Time create_time_;
+
+  mutable absl::Mutex mutex_;
+  IkProblem problem_ ABSL_GUARDED_BY(mutex_);
+  SolverOptions options_ ABSL_GUARDED_BY(mutex_);
+  Eigen::VectorXd positions_ ABSL_GUARDED_BY(mutex_);
+  bool cold_ ABSL_GUARDED_BY(mutex_);
+  absl::Duration idle_ttl_ ABSL_GUARDED_BY(mutex_);
+  absl::Time last_driven_ ABSL_GUARDED_BY(mutex_);
+  absl::Status ended_ ABSL_GUARDED_BY(mutex_);
+  std::optional<DriverId> driver_ ABSL_GUARDED_BY(mutex_);
+  int64_t sequence_number_ ABSL_GUARDED_BY(mutex_) = 0;
+  uint64_t version_ ABSL_GUARDED_BY(mutex_) = 0;
+  int64_t revision_ ABSL_GUARDED_BY(mutex_) = 1;
+  // Weights, goals or place were changed by frames.
+  bool drifted_ ABSL_GUARDED_BY(mutex_) = false;
+  // The last frame left some goal where it was.
+  bool partly_named_ ABSL_GUARDED_BY(mutex_) = false;
+};
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_SESSION_SESSION_H_

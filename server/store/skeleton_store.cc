@@ -1,0 +1,73 @@
+#include "server/store/skeleton_store.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace gelenk::server {
+
+SkeletonStore::SkeletonStore(Bounds bounds, std::function<uint64_t()> random)
+    : bounds_(bounds), random_(std::move(random)) {}
+
+absl::StatusOr<StoredSkeleton> SkeletonStore::Create(
+    absl::string_view tenant, absl::string_view id,
+    absl::string_view request_id, StoredSkeleton skeleton) {
+  absl::MutexLock lock(&mutex_);
+  const std::string earlier = requests_.Find(tenant, request_id);
+  if (!earlier.empty()) {
+    const auto found = skeletons_.find({std::string(tenant), earlier});
+    if (found != skeletons_.end()) return found->second;
+  }
+  skeleton.name =
+      ResourceName(kSkeletons, id.empty() ? MakeResourceId("k", random_())
+                                          : std::string(id));
+  const ResourceKey key(tenant, skeleton.name);
+  if (skeletons_.contains(key)) {
+    return absl::AlreadyExistsError(
+        absl::StrCat("skeleton_id: ", skeleton.name, " exists"));
+  }
+  const size_t bytes = skeleton.skeleton->ByteSize();
+  if (skeletons_.size() >= static_cast<size_t>(bounds_.max_skeletons) ||
+      bytes_ + bytes > bounds_.max_bytes) {
+    return absl::ResourceExhaustedError(absl::StrFormat(
+        "skeleton: %d skeletons of %d bytes are held, no more are taken",
+        skeletons_.size(), bytes_));
+  }
+  bytes_ += bytes;
+  requests_.Add(tenant, request_id, skeleton.name);
+  return skeletons_.emplace(key, std::move(skeleton)).first->second;
+}
+
+absl::StatusOr<StoredSkeleton> SkeletonStore::Find(
+    absl::string_view tenant, absl::string_view name) const {
+  absl::ReaderMutexLock lock(&mutex_);
+  const auto found = skeletons_.find({std::string(tenant), std::string(name)});
+  if (found == skeletons_.end()) return NoSuchResource(name);
+  return found->second;
+}
+
+absl::Status SkeletonStore::Delete(absl::string_view tenant,
+                                   absl::string_view name) {
+  absl::MutexLock lock(&mutex_);
+  const auto found = skeletons_.find({std::string(tenant), std::string(name)});
+  if (found == skeletons_.end()) return NoSuchResource(name);
+  bytes_ -= found->second.skeleton->ByteSize();
+  skeletons_.erase(found);
+  return absl::OkStatus();
+}
+
+std::vector<StoredSkeleton> SkeletonStore::List(absl::string_view tenant,
+                                                absl::string_view after,
+                                                size_t limit) const {
+  absl::ReaderMutexLock lock(&mutex_);
+  std::vector<StoredSkeleton> page;
+  auto it = skeletons_.upper_bound({std::string(tenant), std::string(after)});
+  for (; it != skeletons_.end() && it->first.first == tenant; ++it) {
+    if (page.size() == limit) break;
+    page.push_back(it->second);
+  }
+  return page;
+}
+
+}  // namespace gelenk::server

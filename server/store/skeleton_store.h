@@ -1,0 +1,68 @@
+// The skeletons of all tenants: immutable, shared by the sessions on them.
+//
+// In memory; a restart forgets them. Thread-safe.
+#ifndef GELENK_SERVER_STORE_SKELETON_STORE_H_
+#define GELENK_SERVER_STORE_SKELETON_STORE_H_
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "absl/synchronization/mutex.h"
+#include "absl/time/time.h"
+#include "gelenk/skeleton/skeleton.h"
+#include "server/session/request_log.h"
+
+namespace gelenk::server {
+
+// A skeleton and what people say about it.
+struct StoredSkeleton {
+  std::string name;
+  std::string display_name;
+  std::vector<std::string> warnings;
+  bool planar = false;
+  absl::Time create_time;
+  std::shared_ptr<const Skeleton> skeleton;
+};
+
+class SkeletonStore {
+ public:
+  struct Bounds {
+    int max_skeletons;
+    size_t max_bytes;
+  };
+  SkeletonStore(Bounds bounds, std::function<uint64_t()> random);
+
+  // Keeps `skeleton` under `id` (checked), or one of its own when empty; fills
+  // its name. A repeated `request_id` answers what the first one made.
+  // ALREADY_EXISTS, RESOURCE_EXHAUSTED.
+  absl::StatusOr<StoredSkeleton> Create(absl::string_view tenant,
+                                        absl::string_view id,
+                                        absl::string_view request_id,
+                                        StoredSkeleton skeleton);
+
+  absl::StatusOr<StoredSkeleton> Find(absl::string_view tenant,
+                                      absl::string_view name) const;
+  absl::Status Delete(absl::string_view tenant, absl::string_view name);
+
+  // In order of name, the first `limit` after `after`.
+  std::vector<StoredSkeleton> List(absl::string_view tenant,
+                                   absl::string_view after, size_t limit) const;
+
+ private:
+  const Bounds bounds_;
+  const std::function<uint64_t()> random_;
+  mutable absl::Mutex mutex_;
+  std::map<ResourceKey, StoredSkeleton> skeletons_ ABSL_GUARDED_BY(mutex_);
+  size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;
+  RequestLog requests_ ABSL_GUARDED_BY(mutex_);
+};
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_STORE_SKELETON_STORE_H_
