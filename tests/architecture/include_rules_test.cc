@@ -24,6 +24,10 @@ const std::string kInternal = "gelenk/internal/";  // Messages of our own.
 const std::string kClient = "gelenk/client/";
 const std::string kConvert = "convert/";
 const std::string kGrpc = "grpcpp/";
+const std::string kHealth = "grpc/health/v1/";  // Generated, gRPC's own.
+// What every room of the server may know about the server as a whole.
+const std::string kOptions = "server/options.h";
+const std::string kVersion = "server/version.h";
 
 using Includes = std::vector<std::string>;
 
@@ -32,8 +36,9 @@ Includes operator+(Includes left, const Includes& right) {
   return left;
 }
 
-const Includes kPosix = {"unistd.h", "fcntl.h", "signal.h", "poll.h",
-                         "sys/",     "netdb.h", "arpa/",    "netinet/"};
+const Includes kPosix = {"unistd.h", "fcntl.h",   "signal.h",
+                         "poll.h",   "pthread.h", "sys/",
+                         "netdb.h",  "arpa/",     "netinet/"};
 
 // clang-format off
 
@@ -65,14 +70,15 @@ const std::vector<Room>& House() {
 
     // rpc: convert, call, convert, return.
     {"server/rpc/",     {kStd, "Eigen/", "absl/", kCore, kGenerated,
-                         kInternal, kConvert, kGrpc, "google/protobuf/",
-                         "server/options.h", "server/rpc/", "server/session/",
-                         "server/store/"}, {kClient}},
+                         kInternal, kConvert, kGrpc, kHealth,
+                         "google/protobuf/", kOptions, kVersion, "server/rpc/",
+                         "server/session/", "server/store/"}, {kClient}},
 
     // ops: what a running server needs around the calls.
     {"server/ops/",     Includes{kStd, "absl/", kCore, kGenerated, kGrpc,
-                         "spdlog/", "nlohmann/", "server/ops/",
-                         "server/session/", "server/store/"} + kPosix,
+                         "CLI/", "spdlog/", "nlohmann/", kOptions, kVersion,
+                         "server/ops/", "server/session/",
+                         "server/store/"} + kPosix,
                         {kInternal, kClient}},
 
     // main, options, server: put the rooms together.
@@ -82,9 +88,9 @@ const std::vector<Room>& House() {
 
     // client: talks to the server over the wire only.
     {"client/",         Includes{kStd, "Eigen/", "absl/", kCore, kGenerated,
-                         kClient, kConvert, kGrpc, "google/protobuf/", "CLI/",
-                         "spdlog/", "nlohmann/", "client/"} + kPosix,
-                        {kInternal}},
+                         kClient, kConvert, kGrpc, kHealth,
+                         "google/protobuf/", "CLI/", "spdlog/",
+                         "nlohmann/", "client/"} + kPosix, {kInternal}},
 
     // Without --server the CLI hosts the same service in its own process; this
     // is the one file that may know how.
