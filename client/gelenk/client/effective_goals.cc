@@ -1,0 +1,149 @@
+#include "gelenk/client/effective_goals.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace gelenk::client {
+namespace {
+
+using Goals = google::protobuf::RepeatedPtrField<v1::Goal>;
+
+Goals::iterator Find(Goals& goals, const std::string& goal_id) {
+  return std::find_if(
+      goals.begin(), goals.end(),
+      [&goal_id](const v1::Goal& goal) { return goal.goal_id() == goal_id; });
+}
+
+bool Fits(const v1::GoalTarget& target, const v1::Goal& goal) {
+  switch (target.target_case()) {
+    case v1::GoalTarget::kWorldPosition:
+      return goal.has_position();
+    case v1::GoalTarget::kWorldRotation:
+      return goal.has_rotation();
+    case v1::GoalTarget::kWorldPose:
+      return goal.has_pose();
+    case v1::GoalTarget::TARGET_NOT_SET:
+      break;
+  }
+  return false;
+}
+
+void ApplyTarget(const v1::GoalTarget& target, v1::Goal* goal) {
+  if (!Fits(target, *goal)) return;
+  if (goal->has_position()) {
+    *goal->mutable_position()->mutable_world_position() =
+        target.world_position();
+  } else if (goal->has_rotation()) {
+    *goal->mutable_rotation()->mutable_world_rotation() =
+        target.world_rotation();
+  } else {
+    *goal->mutable_pose()->mutable_world_pose() = target.world_pose();
+  }
+  if (target.has_weight()) goal->set_weight(target.weight());
+}
+
+double WeightOf(const v1::Goal& goal) {
+  return goal.has_weight() ? goal.weight() : 1;
+}
+
+// Says aloud what unset fields mean.
+void StateTarget(const v1::Goal& goal, v1::GoalTarget* target) {
+  if (goal.has_position()) {
+    *target->mutable_world_position() = goal.position().world_position();
+  } else if (goal.has_rotation()) {
+    if (goal.rotation().has_world_rotation()) {
+      *target->mutable_world_rotation() = goal.rotation().world_rotation();
+    } else {
+      target->mutable_world_rotation()->set_w(1);
+    }
+  } else {
+    *target->mutable_world_pose() = goal.pose().world_pose();
+  }
+}
+
+// `change` of a goal that is there: what is set of weight and kind counts.
+void Change(const v1::Goal& change, v1::Goal* goal) {
+  v1::Goal changed =
+      change.kind_case() == v1::Goal::KIND_NOT_SET ? *goal : change;
+  if (change.has_weight()) {
+    changed.set_weight(change.weight());
+  } else if (goal->has_weight()) {
+    changed.set_weight(goal->weight());
+  }
+  *goal = std::move(changed);
+}
+
+}  // namespace
+
+EffectiveGoals::EffectiveGoals(const v1::Session& session)
+    : goals_(session.goals()),
+      world_from_skeleton_(session.world_from_skeleton()) {}
+
+void EffectiveGoals::Apply(const v1::TargetFrame& frame) {
+  if (frame.has_goal_patch() && !ApplyPatch(frame.goal_patch())) return;
+  for (const v1::GoalTarget& target : frame.targets()) {
+    if (target.goal_index() < 0 || target.goal_index() >= goals_.size()) {
+      continue;
+    }
+    ApplyTarget(target, goals_.Mutable(target.goal_index()));
+  }
+  if (frame.has_world_from_skeleton()) {
+    world_from_skeleton_ = frame.world_from_skeleton();
+  }
+}
+
+void EffectiveGoals::Complete(v1::TargetFrame* frame) const {
+  EffectiveGoals patched = *this;
+  if (frame->has_goal_patch() && !patched.ApplyPatch(frame->goal_patch())) {
+    return;
+  }
+  std::vector<bool> named(patched.goals_.size(), false);
+  for (v1::GoalTarget& target : *frame->mutable_targets()) {
+    const int index = target.goal_index();
+    if (index < 0 || index >= patched.goals_.size()) continue;
+    named[index] = true;
+    if (!target.has_weight()) {
+      target.set_weight(WeightOf(patched.goals_[index]));
+    }
+  }
+  for (int index = 0; index < patched.goals_.size(); ++index) {
+    const v1::Goal& goal = patched.goals_[index];
+    if (named[index] || goal.kind_case() == v1::Goal::KIND_NOT_SET) continue;
+    v1::GoalTarget* target = frame->add_targets();
+    target->set_goal_index(index);
+    target->set_weight(WeightOf(goal));
+    StateTarget(goal, target);
+  }
+  if (!frame->has_world_from_skeleton()) {
+    *frame->mutable_world_from_skeleton() = world_from_skeleton_;
+  }
+}
+
+void EffectiveGoals::Declare(v1::Session* session) const {
+  *session->mutable_goals() = goals_;
+  *session->mutable_world_from_skeleton() = world_from_skeleton_;
+}
+
+bool EffectiveGoals::ApplyPatch(const v1::GoalPatch& patch) {
+  Goals merged = goals_;
+  for (const std::string& goal_id : patch.removed_goal_ids()) {
+    const auto found = Find(merged, goal_id);
+    if (found == merged.end()) return false;
+    merged.erase(found);
+  }
+  for (const v1::Goal& change : patch.goals()) {
+    const auto found = Find(merged, change.goal_id());
+    if (found != merged.end()) {
+      Change(change, &*found);
+    } else if (change.kind_case() != v1::Goal::KIND_NOT_SET) {
+      *merged.Add() = change;
+    } else {
+      return false;
+    }
+  }
+  goals_ = std::move(merged);
+  return true;
+}
+
+}  // namespace gelenk::client
