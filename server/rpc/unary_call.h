@@ -52,9 +52,7 @@ class UnaryCall {
     Start(method_);
     const bool taken =
         method_.state->workers.Submit([this](LevenbergMarquardtSolver& solver) {
-          Finish(context_.IsCancelled()
-                     ? absl::CancelledError("the caller is gone")
-                     : method_.handle(solver, request_, &response_));
+          Finish(method_.handle(solver, request_, &response_));
         });
     if (!taken) {
       Finish(absl::ResourceExhaustedError("too many calls are waiting"));
