@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/synchronization/mutex.h"
 #include "absl/synchronization/notification.h"
 #include "absl/time/clock.h"
 #include "server/rpc/health_service.h"
@@ -49,6 +50,9 @@ class GrpcServer final : public Server {
   ~GrpcServer() override { Drain(absl::ZeroDuration()); }
 
   absl::Status Listen() {
+    // The platform's Abseil is built with checks for deadlocks, which take a
+    // global lock for each of ours.
+    absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
     const ServerOptions& options = state_.options;
     if (options.reflection) {
       grpc::reflection::InitProtoReflectionServerBuilderPlugin();

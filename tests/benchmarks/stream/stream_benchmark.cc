@@ -1,0 +1,351 @@
+// What the server adds to a frame, besides the solve, against a bare echo that
+// carries as many bytes both ways.
+//
+// Both servers are measured in turn, several pairs, by the CPU time of their
+// processes: wall-clock throughput would measure this loader, which shares the
+// cores. Closed loop: each stream sends its next message when it has read the
+// answer. The solve is subtracted by its own report, without the slowest
+// percent, which were interrupted.
+#include <grpcpp/grpcpp.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "convert/geometry.h"
+#include "convert/goal.h"
+#include "convert/pose.h"
+#include "convert/skeleton.h"
+#include "gelenk/v1/kinematics_service.grpc.pb.h"
+#include "gelenk/v1/session_service.grpc.pb.h"
+#include "stream/echo.grpc.pb.h"
+#include "tests/benchmarks/problems.h"
+#include "tests/benchmarks/stream/child_process.h"
+
+namespace gelenk::benchmarks {
+namespace {
+
+constexpr int kStreams = 100;
+constexpr int kConnections = 10;
+constexpr int kPairs = 5;
+constexpr double kSeconds = 1.5;
+
+using Clock = std::chrono::steady_clock;
+
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+double MeanWithoutSlowest(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  values.resize(std::max<size_t>(1, values.size() * 99 / 100));
+  double sum = 0;
+  for (double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+// One message on its way to a server and its answer, again and again.
+class LoopStream {
+ public:
+  virtual ~LoopStream() = default;
+  virtual void Run(bool ok) = 0;
+};
+
+// `Traits` says how messages are made and read.
+template <class Request, class Response>
+class TypedLoopStream final : public LoopStream {
+ public:
+  using ReaderWriter = grpc::ClientAsyncReaderWriter<Request, Response>;
+  using Prepare =
+      std::function<std::unique_ptr<ReaderWriter>(grpc::ClientContext*)>;
+
+  TypedLoopStream(const Prepare& prepare, std::function<void(Request&)> next,
+                  std::function<void(const Response&)> take)
+      : next_(std::move(next)), take_(std::move(take)) {
+    stream_ = prepare(&context_);
+    stream_->StartCall(this);
+  }
+
+  // One operation is under way at a time: start, then write, read, write, …
+  void Run(bool ok) override {
+    if (!ok) return;
+    if (reading_) take_(response_);
+    if (writing_) {
+      writing_ = false;
+      reading_ = true;
+      stream_->Read(&response_, this);
+      return;
+    }
+    reading_ = false;
+    writing_ = true;
+    next_(request_);
+    stream_->Write(request_, this);
+  }
+
+ private:
+  grpc::ClientContext context_;
+  std::unique_ptr<ReaderWriter> stream_;
+  Request request_;
+  Response response_;
+  const std::function<void(Request&)> next_;
+  const std::function<void(const Response&)> take_;
+  bool reading_ = false;
+  bool writing_ = false;
+};
+
+struct Load {
+  std::vector<std::shared_ptr<grpc::Channel>> channels;
+  grpc::CompletionQueue queue;
+  std::vector<std::unique_ptr<LoopStream>> streams;
+  long messages = 0;
+  bool counting = false;
+
+  explicit Load(const std::string& address) {
+    grpc::ChannelArguments arguments;
+    arguments.SetInt("grpc.use_local_subchannel_pool", 1);
+    for (int i = 0; i < kConnections; ++i) {
+      channels.push_back(grpc::CreateCustomChannel(
+          address, grpc::InsecureChannelCredentials(), arguments));
+    }
+  }
+
+  void RunFor(double seconds) {
+    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    void* tag;
+    bool ok;
+    while (Clock::now() < end && queue.Next(&tag, &ok)) {
+      static_cast<LoopStream*>(tag)->Run(ok);
+    }
+  }
+};
+
+struct Figures {
+  double cpu_us = 0;    // of the server, a frame
+  double solve_us = 0;  // of it in the solver
+  double frames_s = 0;
+};
+
+Figures Measure(const ChildProcess& server, Load& load, int batch) {
+  load.RunFor(0.5);
+  load.messages = 0;
+  load.counting = true;
+  const double cpu = server.cpu_seconds();
+  const auto begin = Clock::now();
+  load.RunFor(kSeconds);
+  const double seconds =
+      std::chrono::duration<double>(Clock::now() - begin).count();
+  const double frames = static_cast<double>(load.messages) * batch;
+  return {1e6 * (server.cpu_seconds() - cpu) / frames, 0, frames / seconds};
+}
+
+// The loader's calls are left to the end of the process: taking them down one
+// by one is no part of the figures.
+void Abandon(std::unique_ptr<Load> load) { load.release(); }
+
+Figures MeasureEcho(int threads, size_t request_bytes, size_t answer_bytes,
+                    int batch) {
+  ChildProcess server(
+      {BARE_ECHO, std::to_string(threads), std::to_string(answer_bytes)});
+  auto load = std::make_unique<Load>(server.ReadLine());
+  const std::string payload(request_bytes, 'x');
+  for (int i = 0; i < kStreams; ++i) {
+    std::shared_ptr<Echo::Stub> stub =
+        Echo::NewStub(load->channels[i % kConnections]);
+    load->streams.push_back(std::make_unique<TypedLoopStream<Payload, Payload>>(
+        [stub, &load](grpc::ClientContext* context) {
+          return stub->PrepareAsyncStream(context, &load->queue);
+        },
+        [&payload](Payload& request) { request.set_bytes(payload); },
+        [l = load.get()](const Payload&) { l->messages += l->counting; }));
+  }
+  const Figures figures = Measure(server, *load, batch);
+  Abandon(std::move(load));
+  return figures;
+}
+
+// Sends the frames of one session, to and fro.
+class FrameSource {
+ public:
+  FrameSource(const StreamProblem& problem, int batch, int phase)
+      : problem_(problem), batch_(batch), at_(phase) {}
+
+  void Fill(v1::StreamingSolveRequest& request) {
+    request.Clear();
+    const size_t period = 2 * (problem_.frames.size() - 1);
+    for (int b = 0; b < batch_; ++b) {
+      at_ = (at_ + 1) % period;
+      const size_t frame = at_ < problem_.frames.size() ? at_ : period - at_;
+      v1::TargetFrame* out = request.add_frames();
+      out->set_sequence_number(++number_);
+      for (size_t g = 0; g < problem_.frames[frame].size(); ++g) {
+        v1::GoalTarget* target = out->add_targets();
+        target->set_goal_index(static_cast<int>(g));
+        const GoalTarget& value = problem_.frames[frame][g];
+        if (const auto* point = std::get_if<Eigen::Vector3d>(&value)) {
+          convert::ToProto(*point, target->mutable_world_position());
+        } else {
+          convert::ToProto(std::get<RigidTransform>(value),
+                           target->mutable_world_pose());
+        }
+      }
+    }
+  }
+
+ private:
+  const StreamProblem& problem_;
+  const int batch_;
+  size_t at_;
+  int64_t number_ = 0;
+};
+
+void Check(const grpc::Status& status) {
+  if (status.ok()) return;
+  std::fprintf(stderr, "%s\n", status.error_message().c_str());
+  std::exit(1);
+}
+
+void CreateSessions(const StreamProblem& problem, Load& load) {
+  auto kinematics = v1::KinematicsService::NewStub(load.channels[0]);
+  auto sessions = v1::SessionService::NewStub(load.channels[0]);
+  {
+    grpc::ClientContext context;
+    v1::CreateSkeletonRequest request;
+    request.set_skeleton_id("benchmark");
+    convert::ToProto(*problem.skeleton, request.mutable_skeleton());
+    v1::Skeleton skeleton;
+    Check(kinematics->CreateSkeleton(&context, request, &skeleton));
+  }
+  for (int i = 0; i < kStreams; ++i) {
+    grpc::ClientContext context;
+    v1::CreateSessionRequest request;
+    request.set_session_id("benchmark-" + std::to_string(i));
+    v1::Session* session = request.mutable_session();
+    session->set_skeleton("skeletons/benchmark");
+    convert::ToProto(problem.goals, session->mutable_goals());
+    convert::ToProto(problem.start, session->mutable_pose());
+    session->mutable_solver_options()->set_position_tolerance_m(1e-3);
+    session->mutable_solver_options()->set_rotation_tolerance_rad(1e-2);
+    v1::Session created;
+    Check(sessions->CreateSession(&context, request, &created));
+  }
+}
+
+Figures MeasureServer(int threads, const StreamProblem& problem, int batch,
+                      size_t* request_bytes, size_t* answer_bytes) {
+  const std::string port_file =
+      "/tmp/gelenk-benchmark-" + std::to_string(getpid());
+  std::remove(port_file.c_str());
+  ChildProcess server({GELENKD, "--listen=127.0.0.1:0",
+                       "--port-file=" + port_file, "--log-level=error",
+                       "--io-threads=" + std::to_string(threads)});
+  std::string address;
+  while (!(std::ifstream(port_file) >> address)) usleep(10000);
+  std::remove(port_file.c_str());
+  auto load = std::make_unique<Load>(address);
+  CreateSessions(problem, *load);
+  std::vector<double> solves;
+  for (int i = 0; i < kStreams; ++i) {
+    std::shared_ptr<v1::SessionService::Stub> stub =
+        v1::SessionService::NewStub(load->channels[i % kConnections]);
+    auto source = std::make_shared<FrameSource>(problem, batch, 5 * i);
+    bool attached = false;
+    load->streams.push_back(
+        std::make_unique<TypedLoopStream<v1::StreamingSolveRequest,
+                                         v1::StreamingSolveResponse>>(
+            [stub, &load](grpc::ClientContext* context) {
+              return stub->PrepareAsyncStreamingSolve(context, &load->queue);
+            },
+            [source, i, attached,
+             request_bytes](v1::StreamingSolveRequest& request) mutable {
+              if (!attached) {
+                attached = true;
+                request.Clear();
+                v1::AttachSession* attach = request.add_attach();
+                attach->set_session("sessions/benchmark-" + std::to_string(i));
+                attach->set_frame_policy(v1::FRAME_POLICY_EVERY_FRAME);
+                attach->set_report_interval(60);
+                return;
+              }
+              source->Fill(request);
+              *request_bytes = request.ByteSizeLong();
+            },
+            [l = load.get(), &solves,
+             answer_bytes](const v1::StreamingSolveResponse& response) {
+              if (!l->counting || response.frames_size() == 0) return;
+              ++l->messages;
+              *answer_bytes = response.ByteSizeLong();
+              for (const v1::PoseFrame& frame : response.frames()) {
+                solves.push_back(1e-3 *
+                                 frame.report().solve_duration().nanos());
+              }
+            }));
+  }
+  Figures figures = Measure(server, *load, batch);
+  figures.solve_us = MeanWithoutSlowest(solves);
+  Abandon(std::move(load));
+  return figures;
+}
+
+void Compare(const char* name, const StreamProblem& problem, int batch,
+             int threads) {
+  std::vector<double> ratios;
+  std::vector<double> ours;
+  std::vector<double> bare;
+  std::vector<double> solve;
+  size_t request_bytes = 0;
+  size_t answer_bytes = 0;
+  for (int pair = 0; pair < kPairs; ++pair) {
+    const Figures server =
+        MeasureServer(threads, problem, batch, &request_bytes, &answer_bytes);
+    const Figures echo =
+        MeasureEcho(threads, request_bytes, answer_bytes, batch);
+    ours.push_back(server.cpu_us - server.solve_us);
+    bare.push_back(echo.cpu_us);
+    solve.push_back(server.solve_us);
+    ratios.push_back(ours.back() / bare.back());
+  }
+  std::printf("%-22s %5d %7d %6zu %6zu %9.2f %9.2f %9.2f %7.2f\n", name, batch,
+              threads, request_bytes, answer_bytes, Median(solve), Median(ours),
+              Median(bare), Median(ratios));
+  std::fflush(stdout);
+}
+
+int Main() {
+  std::printf(
+      "%d streams on %d connections; CPU of the server, us a frame, medians "
+      "of %d pairs\n",
+      kStreams, kConnections, kPairs);
+  std::printf("%-22s %5s %7s %6s %6s %9s %9s %9s %7s\n", "session", "batch",
+              "threads", "in B", "out B", "solve", "the rest", "bare echo",
+              "ratio");
+  const StreamProblem body = BodyProblem(600);
+  const StreamProblem arm = PandaProblem(600);
+  for (int threads : {1, 2}) {
+    for (int batch : {1, 10}) {
+      Compare("body, 31 joints", body, batch, threads);
+      Compare("arm, 7 joints", arm, batch, threads);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace gelenk::benchmarks
+
+int main() {
+  const int code = gelenk::benchmarks::Main();
+  std::fflush(stdout);
+  // Abandoned calls may still be under way.
+  std::_Exit(code);
+}
