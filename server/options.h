@@ -14,7 +14,7 @@ namespace gelenk::server {
 
 // Every bound on what clients can make the server hold.
 struct Limits {
-  // 10,000 sessions of a 64-joint body are about 100 MB.
+  // 10,000 sessions of a 64-joint body are about 50 MB.
   int max_sessions = 10000;
   int max_skeletons = 1000;
   // All skeletons together; one of 64 joints is about 40 KB.

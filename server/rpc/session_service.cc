@@ -58,15 +58,15 @@ absl::StatusOr<std::shared_ptr<Session>> MakeSession(const ServiceState& state,
   violations.AddStatus("session", parts.status());
   if (!violations.empty()) return violations.ToStatus();
   absl::StatusOr<IkProblem> problem =
-      IkProblem::Create(stored->skeleton, parts->goals);
+      stored->trees->CreateProblem(parts->goals);
   violations.AddStatus("session", problem.status());
   if (!violations.empty()) return violations.ToStatus();
   const std::string affinity_key = proto.affinity_key().empty()
                                        ? name.substr(kSessions.size() + 1)
                                        : proto.affinity_key();
   return std::make_shared<Session>(std::move(name), proto.skeleton(),
-                                   affinity_key, *std::move(problem),
-                                   *std::move(parts), now);
+                                   affinity_key, stored->trees,
+                                   *std::move(problem), *std::move(parts), now);
 }
 
 absl::Status CreateSession(ServiceState& state,

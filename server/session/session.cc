@@ -54,12 +54,12 @@ absl::Status CheckUpdates(const IkProblem& problem, InputFrame& frame) {
 }  // namespace
 
 Session::Session(std::string name, std::string skeleton_name,
-                 std::string affinity_key, IkProblem problem,
-                 SessionState state, absl::Time now)
+                 std::string affinity_key, std::shared_ptr<SharedTrees> trees,
+                 IkProblem problem, SessionState state, absl::Time now)
     : name_(std::move(name)),
       skeleton_name_(std::move(skeleton_name)),
       affinity_key_(std::move(affinity_key)),
-      skeleton_(problem.shared_skeleton()),
+      trees_(std::move(trees)),
       create_time_(now),
       problem_(std::move(problem)),
       options_(state.options),
@@ -118,7 +118,7 @@ absl::Status Session::Resume(DriverId driver, const Eigen::VectorXd& positions,
   CheckAndNormalize("world_from_skeleton", place, violations);
   if (!violations.empty()) return violations.ToStatus();
   if (goals != nullptr) {
-    absl::StatusOr<IkProblem> problem = IkProblem::Create(skeleton_, *goals);
+    absl::StatusOr<IkProblem> problem = trees_->CreateProblem(*goals);
     if (!problem.ok()) return problem.status();
     problem_ = *std::move(problem);
     // The driver cannot know these from its create request.
@@ -151,7 +151,7 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
     absl::StatusOr<std::vector<Goal>> goals = frame.patch(problem_.goals());
     if (!goals.ok()) return goals.status();
     absl::StatusOr<IkProblem> problem =
-        IkProblem::Create(skeleton_, *std::move(goals));
+        trees_->CreateProblem(*std::move(goals));
     if (!problem.ok()) return problem.status();
     patched = *std::move(problem);
     patched->SetWorldFromSkeleton(problem_.world_from_skeleton());
@@ -250,7 +250,7 @@ absl::Status Session::Update(
   SessionState state = before.state;
   if (absl::Status status = change(state); !status.ok()) return status;
   absl::StatusOr<IkProblem> problem =
-      IkProblem::Create(skeleton_, std::move(state.goals));
+      trees_->CreateProblem(std::move(state.goals));
   if (!problem.ok()) return problem.status();
   problem->SetWorldFromSkeleton(state.world_from_skeleton);
 

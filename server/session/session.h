@@ -21,6 +21,7 @@
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/skeleton/skeleton.h"
 #include "server/session/input_frame.h"
+#include "server/session/shared_trees.h"
 
 namespace gelenk::server {
 
@@ -60,14 +61,15 @@ struct SolvedFrame {
 class Session {
  public:
   // `state.positions` has passed CheckPositions, `problem` was made of
-  // `state.goals`.
+  // `state.goals` by `trees`.
   Session(std::string name, std::string skeleton_name, std::string affinity_key,
-          IkProblem problem, SessionState state, absl::Time now);
+          std::shared_ptr<SharedTrees> trees, IkProblem problem,
+          SessionState state, absl::Time now);
 
   const std::string& name() const { return name_; }
   const std::string& skeleton_name() const { return skeleton_name_; }
   const std::string& affinity_key() const { return affinity_key_; }
-  const Skeleton& skeleton() const { return *skeleton_; }
+  const Skeleton& skeleton() const { return *trees_->skeleton(); }
   absl::Time create_time() const { return create_time_; }
 
   // Makes `driver` the one who may solve. FAILED_PRECONDITION when there is
@@ -124,6 +126,7 @@ class Session {
   absl::Status ended() const;
 
   bool IsExpired(absl::Time now) const;
+  // Without what sessions share: skeleton and tree.
   size_t ByteSize() const;
 
  private:
@@ -133,7 +136,7 @@ class Session {
   const std::string name_;
   const std::string skeleton_name_;
   const std::string affinity_key_;
-  const std::shared_ptr<const Skeleton> skeleton_;
+  const std::shared_ptr<SharedTrees> trees_;
   const absl::Time create_time_;
 
   mutable absl::Mutex mutex_;

@@ -35,6 +35,7 @@ absl::StatusOr<StoredSkeleton> SkeletonStore::Create(
         skeletons_.size(), bytes_));
   }
   bytes_ += bytes;
+  skeleton.trees = std::make_shared<SharedTrees>(skeleton.skeleton);
   requests_.Add(tenant, request_id, skeleton.name);
   return skeletons_.emplace(key, std::move(skeleton)).first->second;
 }

@@ -17,6 +17,7 @@
 #include "absl/time/time.h"
 #include "gelenk/skeleton/skeleton.h"
 #include "server/session/request_log.h"
+#include "server/session/shared_trees.h"
 
 namespace gelenk::server {
 
@@ -28,6 +29,8 @@ struct StoredSkeleton {
   bool planar = false;
   absl::Time create_time;
   std::shared_ptr<const Skeleton> skeleton;
+  // What its sessions are solved on; made by the store.
+  std::shared_ptr<SharedTrees> trees;
 };
 
 class SkeletonStore {

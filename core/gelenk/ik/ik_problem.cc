@@ -43,7 +43,8 @@ void StoreTranslation(const Eigen::Vector3d& translation,
 }  // namespace
 
 absl::StatusOr<IkProblem> IkProblem::Create(
-    std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals) {
+    std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
+    const TreeSource& trees) {
   Violations violations;
   if (goals.size() > kMaxGoals) {
     violations.Add("goals", absl::StrFormat("want at most %d, got %d",
@@ -75,15 +76,17 @@ absl::StatusOr<IkProblem> IkProblem::Create(
         {*effector, HasTranslation(goal.kind), HasRotation(goal.kind)});
   }
   if (!violations.empty()) return violations.ToStatus();
-  return IkProblem(std::move(skeleton), std::move(goals), tasks);
+  std::shared_ptr<const SparseTree> tree =
+      trees ? trees(tasks) : std::make_shared<SparseTree>(*skeleton, tasks);
+  return IkProblem(std::move(skeleton), std::move(goals), std::move(tree));
 }
 
 IkProblem::IkProblem(std::shared_ptr<const Skeleton> skeleton,
                      std::vector<Goal> goals,
-                     absl::Span<const EffectorTask> tasks)
+                     std::shared_ptr<const SparseTree> tree)
     : skeleton_(std::move(skeleton)),
       goals_(std::move(goals)),
-      tree_(*skeleton_, tasks),
+      tree_(std::move(tree)),
       targets_(goals_.size()) {
   for (size_t i = 0; i < goals_.size(); ++i) Refresh(static_cast<int>(i));
 }
@@ -151,7 +154,7 @@ void IkProblem::Refresh(int goal_index) {
 }
 
 size_t IkProblem::ByteSize() const {
-  size_t bytes = sizeof(*this) - sizeof(tree_) + tree_.ByteSize() +
+  size_t bytes = sizeof(*this) +
                  targets_.capacity() * sizeof(kernel::TaskTarget) +
                  goals_.capacity() * sizeof(Goal);
   for (const Goal& goal : goals_) {

@@ -4,6 +4,7 @@
 #ifndef GELENK_IK_IK_PROBLEM_H_
 #define GELENK_IK_IK_PROBLEM_H_
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -20,13 +21,19 @@ namespace gelenk {
 // A body with trackers everywhere has about 20 goals.
 inline constexpr int kMaxGoals = 256;
 
+// Finds or makes the tree for such tasks. Problems of the same skeleton whose
+// goals name the same effectors may share one.
+using TreeSource = std::function<std::shared_ptr<const SparseTree>(
+    absl::Span<const EffectorTask>)>;
+
 class IkProblem {
  public:
   // INVALID_ARGUMENT listing every bad goal: malformed (see CheckAndNormalize),
   // unknown effector, duplicate id, too many. No goals is fine: solving leaves
-  // the pose as it is.
+  // the pose as it is. Without `trees` the problem makes a tree of its own.
   static absl::StatusOr<IkProblem> Create(
-      std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals);
+      std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
+      const TreeSource& trees = nullptr);
 
   IkProblem(IkProblem&&) = default;
   IkProblem& operator=(IkProblem&&) = default;
@@ -56,19 +63,20 @@ class IkProblem {
   }
 
   // For solvers.
-  const SparseTree& tree() const { return tree_; }
+  const SparseTree& tree() const { return *tree_; }
   absl::Span<const kernel::TaskTarget> targets() const { return targets_; }
 
+  // Without skeleton and tree.
   size_t ByteSize() const;
 
  private:
   IkProblem(std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
-            absl::Span<const EffectorTask> tasks);
+            std::shared_ptr<const SparseTree> tree);
   void Refresh(int goal_index);
 
   std::shared_ptr<const Skeleton> skeleton_;
   std::vector<Goal> goals_;
-  SparseTree tree_;
+  std::shared_ptr<const SparseTree> tree_;
   std::vector<kernel::TaskTarget> targets_;
   RigidTransform world_from_skeleton_;
 };

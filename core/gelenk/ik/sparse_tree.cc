@@ -94,6 +94,7 @@ class SparseTreeBuilder {
     for (const EffectorTask& task : tasks_) AddTask(task);
     PackRows();
     tree_.position_count_ = skeleton_.position_count();
+    GiveBackSpareMemory();
   }
 
  private:
@@ -334,6 +335,17 @@ class SparseTreeBuilder {
       column.row = tree_.h_size_;
       tree_.h_size_ += kernel::PaddedRow(column.depth + 1);
     }
+  }
+
+  // Trees live as long as sessions do.
+  void GiveBackSpareMemory() {
+    tree_.nodes_.shrink_to_fit();
+    tree_.rotation_limits_.shrink_to_fit();
+    tree_.columns_.shrink_to_fit();
+    tree_.path_columns_.shrink_to_fit();
+    tree_.followers_.shrink_to_fit();
+    tree_.tasks_.shrink_to_fit();
+    tree_.joints_of_nodes_.shrink_to_fit();
   }
 
   const Skeleton& skeleton_;

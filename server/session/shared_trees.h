@@ -1,0 +1,47 @@
+// The trees that the sessions of one skeleton are solved on, each kept once: a
+// tree is some 10 KB, and ten thousand sessions of a game tend to have goals at
+// the same effectors.
+//
+// Thread-safe. A tree goes with the last session that is solved on it.
+#ifndef GELENK_SERVER_SESSION_SHARED_TREES_H_
+#define GELENK_SERVER_SESSION_SHARED_TREES_H_
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/statusor.h"
+#include "absl/synchronization/mutex.h"
+#include "absl/types/span.h"
+#include "gelenk/ik/ik_problem.h"
+#include "gelenk/skeleton/skeleton.h"
+
+namespace gelenk::server {
+
+class SharedTrees {
+ public:
+  explicit SharedTrees(std::shared_ptr<const Skeleton> skeleton);
+
+  const std::shared_ptr<const Skeleton>& skeleton() const { return skeleton_; }
+
+  // As IkProblem::Create, on a shared tree.
+  absl::StatusOr<IkProblem> CreateProblem(std::vector<Goal> goals);
+
+  // Trees that some problem is on.
+  int tree_count() const;
+
+ private:
+  std::shared_ptr<const SparseTree> Find(absl::Span<const EffectorTask> tasks);
+
+  const std::shared_ptr<const Skeleton> skeleton_;
+  mutable absl::Mutex mutex_;
+  // By the bits of the tasks.
+  std::map<std::string, std::weak_ptr<const SparseTree>> trees_
+      ABSL_GUARDED_BY(mutex_);
+};
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_SESSION_SHARED_TREES_H_
