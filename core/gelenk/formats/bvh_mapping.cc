@@ -1,13 +1,9 @@
 #include "gelenk/formats/bvh_mapping.h"
 
-#include <numbers>
-
 #include "gelenk/math/rotation.h"
 
 namespace gelenk {
 namespace {
-
-constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 Eigen::Vector3d AnglesOf(const BvhRotation& rotation,
                          const ConstVectorView& channels) {

@@ -7,12 +7,15 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <numbers>
 #include <vector>
 
 #include "gelenk/math/euler.h"
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
+
+inline constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 // q[position] = scale * channel.
 struct BvhScalar {

@@ -131,23 +131,28 @@ int LastOfScalarJoints(const Skeleton& skeleton, const Tree& tree, int joint) {
   return joint;
 }
 
-// The end of the two longest bones in a row: forearm or shin.
+// The end of the last two long bones in a row: forearm or shin.
 int WristOrAnkle(const Skeleton& skeleton, const Tree& tree,
                  const std::vector<int>& chain) {
-  int end = chain.back();
-  double longest = 0;
+  // Collar bone and upper arm can be longer than upper arm and forearm; hands
+  // and feet are far shorter.
+  constexpr double kAlmostAsLong = 0.75;
+  std::vector<int> ends;
+  std::vector<double> shorter;  // of the two bones that end there
   double bone_before = 0;
   for (int joint : chain) {
     // Joints on one spot have no bone between them.
     if (tree.bone[joint] == 0) continue;
-    const double shorter = std::min(bone_before, tree.bone[joint]);
-    if (shorter > longest) {
-      longest = shorter;
-      end = joint;
-    }
+    ends.push_back(joint);
+    shorter.push_back(std::min(bone_before, tree.bone[joint]));
     bone_before = tree.bone[joint];
   }
-  return LastOfScalarJoints(skeleton, tree, end);
+  if (ends.empty()) return chain.back();
+  const double long_enough =
+      kAlmostAsLong * *std::max_element(shorter.begin(), shorter.end());
+  size_t last = ends.size() - 1;
+  while (shorter[last] < long_enough) --last;
+  return LastOfScalarJoints(skeleton, tree, ends[last]);
 }
 
 // > 0 when the names of the chain say left, < 0 for right.
