@@ -6,7 +6,8 @@
 # included from its root ("tests/testing/random_pose.h").
 #
 # Labels in use: unit, integration, architecture, concurrent (also run under
-# ThreadSanitizer), soak (only with `./dev soak`).
+# ThreadSanitizer), soak (only with `./dev soak`), corpus (on files that are not
+# part of the project; skipped where they are not found).
 find_package(GTest CONFIG REQUIRED)
 
 function(gelenk_test name)

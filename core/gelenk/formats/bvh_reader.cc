@@ -270,7 +270,7 @@ absl::StatusOr<int64_t> BvhParser::ReadFrameCount() {
                         "the frames",
                         bounds_.max_numbers, channels));
   }
-  return frames;
+  return *frames;
 }
 
 absl::Status BvhParser::ReadFrameTime(int64_t frames) {

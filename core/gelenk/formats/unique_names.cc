@@ -59,12 +59,12 @@ std::string PrintableUtf8(absl::string_view text) {
 }
 
 std::string UniqueNames::Take(absl::string_view name) {
-  const std::string base(TruncateUtf8(name, max_bytes_));
+  std::string base(TruncateUtf8(name, max_bytes_));
   if (taken_.insert(base).second) return base;
   int& number = next_number_.emplace(base, 2).first->second;
   while (true) {
     const std::string suffix = absl::StrCat("#", number++);
-    const std::string numbered =
+    std::string numbered =
         absl::StrCat(TruncateUtf8(base, max_bytes_ - suffix.size()), suffix);
     if (taken_.insert(numbered).second) return numbered;
   }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -176,6 +177,32 @@ TEST(BvhImportTest, NamesThatAreNoIdsAreChangedAndReported) {
   EXPECT_THAT(import.warnings,
               ElementsAre(HasSubstr("is called"), HasSubstr("is called"),
                           HasSubstr("is called")));
+}
+
+TEST(BvhImportTest, TakesJointsWithoutLengthAndNamesOfEveryKind) {
+  const BvhImport import =
+      Import(File("OFFSET 0 0 0\nJOINT mixamorig:Hips\n{ OFFSET 0 0 0 "
+                  "CHANNELS 3 Yrotation Zrotation Xrotation\n"
+                  "JOINT Bip01 L Hand\n{ OFFSET 0 0 0 } }",
+                  "1\nFrame Time: 1\n1 2 3\n"));
+  EXPECT_THAT(Ids(import),
+              ElementsAre("root", "mixamorig:Hips", "Bip01 L Hand"));
+  EXPECT_THAT(import.warnings, IsEmpty());
+}
+
+TEST(BvhImportTest, RefusesSkeletonsThatAreTooLarge) {
+  BvhDocument document;
+  for (int i = 0; i < 600; ++i) {
+    BvhJoint joint;
+    joint.name = absl::StrCat("j", i);
+    joint.parent = std::min(i, 1) - 1;
+    joint.channels = {BvhChannel::kXrotation, BvhChannel::kYrotation};
+    document.joints.push_back(joint);
+  }
+  document.motion.resize(1200, 0);
+  const absl::StatusOr<BvhImport> import = ImportBvh(document, {1});
+  EXPECT_THAT(std::string(import.status().message()),
+              HasSubstr("joints: want at most 1024, got 1200"));
 }
 
 TEST(BvhImportTest, RefusesUnitsThatAreNoLength) {

@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -15,7 +13,7 @@
 #include "gelenk/formats/bvh_reader.h"
 #include "gelenk/formats/bvh_writer.h"
 #include "gelenk/kinematics/forward_kinematics.h"
-#include "gelenk/math/rotation.h"
+#include "tests/core/formats/bvh_oracle.h"
 
 namespace gelenk {
 namespace {
@@ -26,60 +24,9 @@ using ::testing::HasSubstr;
 constexpr double kRotationTolerance = 1e-9;
 constexpr double kPositionTolerance = 1e-9;
 
-// World frames of the file's joints straight from the definition of BVH, by
-// matrices: T(offset, or positions where there are channels) then each rotation
-// in turn.
-std::vector<Eigen::Affine3d> WorldFromJoints(const BvhDocument& document,
-                                             int frame) {
-  std::vector<Eigen::Affine3d> world;
-  int row = 0;
-  for (const BvhJoint& joint : document.joints) {
-    Eigen::Vector3d translation = joint.offset;
-    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-    for (BvhChannel channel : joint.channels) {
-      const double value = document.motion(row++, frame);
-      const int axis = AxisOf(channel);
-      if (IsPosition(channel)) {
-        translation[axis] = value;
-      } else {
-        rotation *= Eigen::AngleAxisd(value * std::numbers::pi / 180,
-                                      Eigen::Vector3d::Unit(axis))
-                        .toRotationMatrix();
-      }
-    }
-    const Eigen::Affine3d parent_from_joint =
-        Eigen::Translation3d(translation) * rotation;
-    world.push_back(joint.parent < 0 ? parent_from_joint
-                                     : world[joint.parent] * parent_from_joint);
-  }
-  return world;
-}
-
-// What two documents of one hierarchy differ by in any joint of any frame.
-struct Difference {
-  double rotation = 0;
-  double position = 0;
-};
-
-Difference Compare(const BvhDocument& a, const BvhDocument& b) {
-  Difference worst;
-  EXPECT_EQ(a.frame_count(), b.frame_count());
-  for (int frame = 0; frame < a.frame_count(); ++frame) {
-    const auto world_a = WorldFromJoints(a, frame);
-    const auto world_b = WorldFromJoints(b, frame);
-    for (size_t i = 0; i < world_a.size(); ++i) {
-      worst.rotation = std::max(
-          worst.rotation, (world_a[i].linear() - world_b[i].linear()).norm());
-      worst.position = std::max(
-          worst.position,
-          (world_a[i].translation() - world_b[i].translation()).norm());
-    }
-  }
-  return worst;
-}
-
 void ExpectSame(const BvhDocument& a, const BvhDocument& b) {
-  const Difference worst = Compare(a, b);
+  ASSERT_EQ(a.frame_count(), b.frame_count());
+  const BvhDifference worst = CompareMotion(a, b);
   EXPECT_LT(worst.rotation, kRotationTolerance);
   EXPECT_LT(worst.position, kPositionTolerance);
 }
@@ -205,7 +152,7 @@ TEST(BvhMotionTest, PosesStandWhereTheFileSays) {
     for (int frame = 0; frame < document.frame_count(); ++frame) {
       ForwardKinematics(*import->skeleton, poses->col(frame),
                         world_from_joints);
-      const auto expected = WorldFromJoints(document, frame);
+      const auto expected = OracleWorldFromJoints(document, frame);
       for (size_t i = 0; i < expected.size(); ++i) {
         const RigidTransform& actual = world_from_joints[import->joints[i]];
         EXPECT_LT(
@@ -238,7 +185,7 @@ TEST(BvhMotionTest, RestPositionsAreTheFilesRestPose) {
   WorldTransforms world_from_joints;
   ForwardKinematics(*import->skeleton, import->skeleton->rest_positions(),
                     world_from_joints);
-  const auto expected = WorldFromJoints(document, 0);
+  const auto expected = OracleWorldFromJoints(document, 0);
   for (size_t i = 0; i < expected.size(); ++i) {
     EXPECT_LT((world_from_joints[import->joints[i]].translation -
                expected[i].translation())

@@ -179,6 +179,45 @@ TEST(BodyPartsTest, FindsABodyByItsShape) {
   EXPECT_EQ(skeleton->joint(parts.head).id, "xw");
 }
 
+TEST(BodyPartsTest, LongCollarBonesAreNoUpperArms) {
+  std::vector<Bone> bones = kNameless;
+  for (Bone& bone : bones) {
+    if (std::string(bone.id) == "xl") bone.x = 0.27;
+    if (std::string(bone.id) == "xq") bone.x = -0.27;
+  }
+  const auto skeleton = Build(bones);
+  const BodyParts parts = FindBodyParts(*skeleton);
+  EXPECT_EQ(skeleton->joint(parts.left_hand).id, "xn");
+  EXPECT_EQ(skeleton->joint(parts.right_hand).id, "xs");
+}
+
+TEST(BodyPartsTest, AWristOfScalarJointsEndsInItsLast) {
+  SkeletonBuilder builder;
+  for (Bone bone : kNameless) {
+    Joint joint;
+    joint.id = bone.id;
+    joint.parent_id = bone.parent;
+    joint.type = JointType::kSpherical;
+    joint.parent_from_joint.translation = {bone.x, bone.y, bone.z};
+    if (joint.id == "xn" || joint.id == "xs") {
+      // First about one axis, then about another on the same spot.
+      Joint before = joint;
+      before.id += ".Xrotation";
+      before.type = JointType::kRevolute;
+      builder.AddJoint(before);
+      joint.parent_id = before.id;
+      joint.type = JointType::kRevolute;
+      joint.parent_from_joint.translation.setZero();
+    }
+    builder.AddJoint(joint);
+  }
+  const auto skeleton = builder.Build();
+  ASSERT_TRUE(skeleton.ok()) << skeleton.status();
+  const BodyParts parts = FindBodyParts(**skeleton);
+  EXPECT_EQ((*skeleton)->joint(parts.left_hand).id, "xn");
+  EXPECT_EQ((*skeleton)->joint(parts.right_hand).id, "xs");
+}
+
 TEST(BodyPartsTest, SidesInNamesGoBeforeTheShape) {
   std::vector<Bone> bones = kNameless;
   for (Bone& bone : bones) {
