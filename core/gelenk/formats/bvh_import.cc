@@ -43,15 +43,14 @@ bool IsFullRotation(const std::vector<ChannelRow>& rotations) {
 
 // The joints that stand for one of the file. Translation comes before
 // rotation, whatever the order of the channels.
-std::vector<JointPlan> JointPlans(
-    const std::vector<ChannelRow>& positions,
-    const std::vector<ChannelRow>& rotations) {
+std::vector<JointPlan> JointPlans(const std::vector<ChannelRow>& positions,
+                                  const std::vector<ChannelRow>& rotations) {
   std::vector<JointPlan> plans;
   const bool is_full_rotation = IsFullRotation(rotations);
   if (positions.size() == 3 && is_full_rotation) {
     plans.push_back({JointType::kFree, positions});
     plans[0].rows.insert(plans[0].rows.end(), rotations.begin(),
-                           rotations.end());
+                         rotations.end());
     return plans;
   }
   for (const ChannelRow& position : positions) {

@@ -141,7 +141,7 @@ absl::Status BvhParser::OpenJoint(int parent) {
   const std::string position = scanner_.Position();
   absl::StatusOr<std::string> name = ReadName();
   GELENK_RETURN_IF_ERROR(name.status());
-  if (name->empty()) return scanner_.Expected("the joint's name on its line");
+  if (name->empty()) return scanner_.Expected("a name");
   BvhJoint joint;
   joint.name = names_.Take(*name);
   joint.parent = parent;

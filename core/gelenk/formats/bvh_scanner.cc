@@ -86,6 +86,7 @@ bool BvhScanner::TakeColon() {
 }
 
 absl::string_view BvhScanner::TakeName() {
+  SkipBlanks();
   size_t end = at_;
   while (end < text_.size() && !EndsLine(text_[end]) && text_[end] != '{') {
     ++end;

@@ -35,7 +35,8 @@ class BvhScanner {
   bool TakeWord(absl::string_view word);
   bool TakeColon();
 
-  // The rest of the line up to a brace that opens, without blanks around it.
+  // From the next token to the end of its line or to a brace that opens,
+  // without blanks around it.
   absl::string_view TakeName();
 
   // A finite decimal number, whatever the locale; a sign + and a missing zero

@@ -124,6 +124,8 @@ TEST(BvhReaderTest, TakesAnyCaseAndBracesOnAnyLine) {
                                  {"Frames", "FRAMES"},
                                  {"Frame Time", "frame time"}});
   ExpectArm(Read(lower));
+  ExpectArm(
+      Read(absl::StrReplaceAll(kArm, {{"JOINT lower", "JOINT\n lower"}})));
   const std::string glued =
       absl::StrReplaceAll(kArm, {{"upper\n{\n", "upper{"},
                                  {"lower\n  {", "lower {"},
@@ -269,8 +271,7 @@ TEST(BvhReaderTest, SaysWhereAHierarchyIsMalformed) {
       {" \n\n", "line 1, column 1: expected HIERARCHY, got end of file"},
       {"\n  solid cube", "line 2, column 3: expected HIERARCHY, got \"solid\""},
       {"HIERARCHY\nJOINT a", "line 2, column 1: expected ROOT, got \"JOINT\""},
-      {"HIERARCHY\nROOT\n{",
-       "line 3, column 1: expected the joint's name on its line, got \"{\""},
+      {"HIERARCHY\nROOT\n{", "line 3, column 1: expected a name, got \"{\""},
       {"HIERARCHY\nROOT a\nOFFSET",
        "line 3, column 1: expected \"{\", got \"OFFSET\""},
       {OneJoint("CHANNELS 0"),
