@@ -68,7 +68,7 @@ std::optional<int> ParseCommandLine(int argc, char** argv,
   app.add_flag("--insecure", server.insecure,
                "Serve plain text to other machines");
   app.add_option("--port-file", command_line.port_file,
-                 "Write the address here once listening");
+                 "Write the port here once listening");
   AddNumber(app, "--io-threads", server.io_threads,
             "Threads that serve streams; 0 means half the cores");
   AddNumber(app, "--worker-threads", server.worker_threads,
@@ -109,7 +109,7 @@ bool WritePortFile(const std::string& path, const std::string& address) {
   const std::string draft = path + ".draft";
   {
     std::ofstream file(draft);
-    file << address << "\n";
+    file << address.substr(address.rfind(':') + 1) << "\n";
     if (!file.flush()) return false;
   }
   return std::rename(draft.c_str(), path.c_str()) == 0;

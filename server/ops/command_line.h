@@ -12,7 +12,7 @@ namespace gelenk::server {
 
 struct CommandLine {
   ServerOptions server;
-  // Receives the address once the server listens.
+  // Receives the port once the server listens.
   std::string port_file;
   std::string log_level = "info";
   // How long streams have to leave after SIGTERM.
@@ -24,7 +24,8 @@ struct CommandLine {
 std::optional<int> ParseCommandLine(int argc, char** argv,
                                     CommandLine& command_line);
 
-// Writes "host:port\n" so that a reader sees all or nothing.
+// Writes the port of `address` and a line break, so that a reader sees all or
+// nothing.
 bool WritePortFile(const std::string& path, const std::string& address);
 
 }  // namespace gelenk::server

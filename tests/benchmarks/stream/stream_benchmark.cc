@@ -249,10 +249,10 @@ Figures MeasureServer(int threads, const StreamProblem& problem, int batch,
   ChildProcess server({GELENKD, "--listen=127.0.0.1:0",
                        "--port-file=" + port_file, "--log-level=error",
                        "--io-threads=" + std::to_string(threads)});
-  std::string address;
-  while (!(std::ifstream(port_file) >> address)) usleep(10000);
+  std::string port;
+  while (!(std::ifstream(port_file) >> port)) usleep(10000);
   std::remove(port_file.c_str());
-  auto load = std::make_unique<Load>(address);
+  auto load = std::make_unique<Load>("127.0.0.1:" + port);
   CreateSessions(problem, *load);
   std::vector<double> solves;
   for (int i = 0; i < kStreams; ++i) {
