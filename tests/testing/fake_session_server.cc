@@ -303,10 +303,17 @@ absl::Status FakeSessionServer::Apply(const v1::TargetFrame& frame,
       convert::Merge(session->goals, frame.goal_patch());
   if (!goals.ok()) return goals.status();
   for (const v1::GoalTarget& proto : frame.targets()) {
+    const int index = proto.goal_index();
+    const bool is_weight_alone =
+        proto.target_case() == v1::GoalTarget::TARGET_NOT_SET;
+    if (is_weight_alone && proto.has_weight() && index >= 0 &&
+        index < static_cast<int>(goals->size())) {
+      (*goals)[index].weight = proto.weight();
+      continue;
+    }
     GoalTarget target;
     const absl::Status converted = convert::FromProto(proto, &target);
     if (!converted.ok()) return converted;
-    const int index = proto.goal_index();
     if (index < 0 || index >= static_cast<int>(goals->size()) ||
         !Fits((*goals)[index].kind, target) || !IsFinite(target)) {
       return absl::InvalidArgumentError(absl::StrCat("target of goal ", index));
@@ -364,7 +371,7 @@ Fate FakeSessionServer::FateOf(const v1::TargetFrame& frame) {
   {
     std::lock_guard<std::mutex> lock(mutex_);
     script = script_;
-    count = static_cast<int>(frames_.size());
+    count = frame_count_++;
   }
   return script == nullptr ? Fate::kAnswer : script(frame, count);
 }

@@ -71,6 +71,7 @@ class FakeSessionServer : private v1::KinematicsService::Service,
   std::vector<v1::AttachSession> attaches() const;
   std::vector<v1::CreateSessionRequest> creates() const;
   int delete_count() const;
+  // Those that were solved.
   std::vector<v1::TargetFrame> frames() const;
   // Metadata gelenk-session of every stream.
   std::vector<std::string> affinity_keys() const;
@@ -130,6 +131,7 @@ class FakeSessionServer : private v1::KinematicsService::Service,
   std::vector<v1::TargetFrame> frames_;
   std::vector<std::string> affinity_keys_;
   int delete_count_ = 0;
+  int frame_count_ = 0;
 
   std::unique_ptr<grpc::Server> server_;
 };

@@ -30,7 +30,11 @@ bool Fits(const v1::GoalTarget& target, const v1::Goal& goal) {
 }
 
 void ApplyTarget(const v1::GoalTarget& target, v1::Goal* goal) {
-  if (!Fits(target, *goal)) return;
+  const bool is_weight_alone =
+      target.target_case() == v1::GoalTarget::TARGET_NOT_SET;
+  if (!is_weight_alone && !Fits(target, *goal)) return;
+  if (target.has_weight()) goal->set_weight(target.weight());
+  if (is_weight_alone) return;
   if (goal->has_position()) {
     *goal->mutable_position()->mutable_world_position() =
         target.world_position();
@@ -40,7 +44,6 @@ void ApplyTarget(const v1::GoalTarget& target, v1::Goal* goal) {
   } else {
     *goal->mutable_pose()->mutable_world_pose() = target.world_pose();
   }
-  if (target.has_weight()) goal->set_weight(target.weight());
 }
 
 double WeightOf(const v1::Goal& goal) {
@@ -93,29 +96,33 @@ void EffectiveGoals::Apply(const v1::TargetFrame& frame) {
   }
 }
 
-void EffectiveGoals::Complete(v1::TargetFrame* frame) const {
+void EffectiveGoals::Complete(const Wanted& wanted,
+                              v1::TargetFrame* frame) const {
   EffectiveGoals patched = *this;
   if (frame->has_goal_patch() && !patched.ApplyPatch(frame->goal_patch())) {
     return;
   }
-  std::vector<bool> named(patched.goals_.size(), false);
+  const int goal_count = patched.goals_.size();
+  std::vector<v1::GoalTarget*> targets(goal_count, nullptr);
   for (v1::GoalTarget& target : *frame->mutable_targets()) {
     const int index = target.goal_index();
-    if (index < 0 || index >= patched.goals_.size()) continue;
-    named[index] = true;
-    if (!target.has_weight()) {
-      target.set_weight(WeightOf(patched.goals_[index]));
+    if (index >= 0 && index < goal_count) targets[index] = &target;
+  }
+  for (int index = 0; index < goal_count; ++index) {
+    const v1::Goal& goal = patched.goals_[index];
+    v1::GoalTarget* target = targets[index];
+    if (target == nullptr) {
+      target = frame->add_targets();
+      target->set_goal_index(index);
+    }
+    if (target->target_case() == v1::GoalTarget::TARGET_NOT_SET) {
+      StateTarget(goal, target);
+    }
+    if (wanted.weights && !target->has_weight()) {
+      target->set_weight(WeightOf(goal));
     }
   }
-  for (int index = 0; index < patched.goals_.size(); ++index) {
-    const v1::Goal& goal = patched.goals_[index];
-    if (named[index] || goal.kind_case() == v1::Goal::KIND_NOT_SET) continue;
-    v1::GoalTarget* target = frame->add_targets();
-    target->set_goal_index(index);
-    target->set_weight(WeightOf(goal));
-    StateTarget(goal, target);
-  }
-  if (!frame->has_world_from_skeleton()) {
+  if (wanted.place && !frame->has_world_from_skeleton()) {
     *frame->mutable_world_from_skeleton() = world_from_skeleton_;
   }
 }

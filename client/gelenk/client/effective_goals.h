@@ -20,10 +20,15 @@ class EffectiveGoals {
   // refuse (an index out of range, a target of another kind) is passed over.
   void Apply(const v1::TargetFrame& frame);
 
-  // Makes `frame` say everything: every goal's target and weight, and the
-  // place. It then means the same on a session whose goals stand elsewhere. A
-  // frame whose patch does not fit stays as it is: the server refuses it.
-  void Complete(v1::TargetFrame* frame) const;
+  // Makes `frame` say more: every goal's target, and where asked for every
+  // weight and the place. It then means the same on a session whose goals stand
+  // elsewhere. A frame whose patch does not fit stays as it is: the server
+  // refuses it.
+  struct Wanted {
+    bool weights = true;
+    bool place = true;
+  };
+  void Complete(const Wanted& wanted, v1::TargetFrame* frame) const;
 
   // Makes `session` declare these goals and this place.
   void Declare(v1::Session* session) const;

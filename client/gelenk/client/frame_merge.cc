@@ -17,6 +17,12 @@ v1::GoalTarget* FindOrAdd(int goal_index, int guess, v1::TargetFrame* frame) {
 }
 
 void Merge(const v1::GoalTarget& newer, v1::GoalTarget* older) {
+  // One without a target changes the weight alone.
+  if (newer.target_case() == v1::GoalTarget::TARGET_NOT_SET) {
+    older->set_goal_index(newer.goal_index());
+    if (newer.has_weight()) older->set_weight(newer.weight());
+    return;
+  }
   const bool keeps_weight = older->has_weight() && !newer.has_weight();
   const double weight = older->weight();
   *older = newer;

@@ -103,20 +103,39 @@ absl::Status Slot::OnAttached(const v1::StreamEvent& event,
     last_pushed_ = std::max(last_pushed_, event.sequence_number());
     return absl::OkStatus();
   }
-  if (was_solved_) {
-    probing_ = true;
-    if (event.status().code() != 0) ++statistics->inexact_resumes;
-    return absl::OkStatus();
+  if (event.status().code() != 0) ++statistics->inexact_resumes;
+  if (!was_solved_) {
+    const bool is_ahead = event.sequence_number() > answered_.sequence_number();
+    if (!is_ahead || just_created_) return absl::OkStatus();
+    return Replace("all answers so far were lost");
   }
-  const bool solved_unheard =
-      event.sequence_number() > answered_.sequence_number();
-  if (!solved_unheard || just_created_) return absl::OkStatus();
-  // The server solved frames whose answers were lost, and there is no answer to
-  // resume from: only a new session starts cold again.
+  if (!answered_.continuation().empty()) return absl::OkStatus();
+  if (!just_created_ && TracesOfSent().patches) {
+    return Replace("the answer to a patch of its goals was lost");
+  }
+  probing_ = true;
+  return absl::OkStatus();
+}
+
+absl::Status Slot::Replace(absl::string_view reason) {
   replace_ = true;
   phase_ = Phase::kAbsent;
-  return absl::UnavailableError(absl::StrCat(
-      SessionName(spec_), ": answers before the first one were lost"));
+  return absl::UnavailableError(
+      absl::StrCat(SessionName(spec_), " is made anew: ", reason));
+}
+
+Slot::Traces Slot::TracesOfSent() const {
+  Traces traces;
+  for (const WaitingFrame& waiting : waiting_) {
+    if (!waiting.was_sent) continue;
+    const v1::TargetFrame& frame = waiting.frame;
+    traces.patches |= frame.has_goal_patch();
+    traces.unsettled.place |= frame.has_world_from_skeleton();
+    for (const v1::GoalTarget& target : frame.targets()) {
+      traces.unsettled.weights |= target.has_weight();
+    }
+  }
+  return traces;
 }
 
 absl::Status Slot::OnDetached(const v1::StreamEvent& event) {
@@ -196,7 +215,7 @@ int Slot::Send(int max_frames, int window, v1::StreamingSolveRequest* request,
     WaitingFrame& waiting = waiting_[sent_count_];
     v1::TargetFrame* frame = request->add_frames();
     *frame = waiting.frame;
-    if (probing_) goals_.Complete(frame);
+    if (probing_) goals_.Complete(TracesOfSent().unsettled, frame);
     ++(waiting.was_sent ? statistics->resent_frames : statistics->sent_frames);
     waiting.was_sent = true;
   }

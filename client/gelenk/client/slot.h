@@ -91,6 +91,13 @@ class Slot {
   }
   bool CanMerge(const v1::TargetFrame& frame) const;
   void MergeWaiting(StreamStatistics* statistics);
+  absl::Status Replace(absl::string_view reason);
+  // What frames without answer may have done to the session.
+  struct Traces {
+    bool patches = false;
+    EffectiveGoals::Wanted unsettled = {false, false};
+  };
+  Traces TracesOfSent() const;
 
   const int index_;
   SessionSpec spec_;
@@ -106,10 +113,12 @@ class Slot {
   int creation_count_ = 0;
   // Created since the last Rewind.
   bool just_created_ = false;
-  // The server's state is ahead of a client that has no answer to resume from.
+  // The server's session is ahead of this client, in ways that no resume takes
+  // back.
   bool replace_ = false;
-  // After a resume frames go one by one and say everything, until one was
-  // accepted: the goals of the resumed session may stand elsewhere.
+  // After a resume without continuation frames go one by one and say
+  // everything, until one was accepted: the session may be the old one, whose
+  // goals were moved by frames that count as never sent.
   bool probing_ = false;
 
   // Sent ones first; their number is sent_count_.
