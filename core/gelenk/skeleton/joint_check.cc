@@ -120,12 +120,13 @@ void CheckRotationLimits(absl::string_view field, const Joint& joint,
              limits.twist_lower_rad, -kMaxTwist, kMaxTwist, violations);
   CheckAngle(absl::StrCat(field, ".limits.twist_upper_rad"),
              limits.twist_upper_rad, -kMaxTwist, kMaxTwist, violations);
-  if (limits.twist_lower_rad && limits.twist_upper_rad &&
-      *limits.twist_lower_rad > *limits.twist_upper_rad) {
+  // A side that is not given ends at half a turn.
+  const double lower = limits.twist_lower_rad.value_or(-std::numbers::pi);
+  const double upper = limits.twist_upper_rad.value_or(std::numbers::pi);
+  if (lower > upper) {
     violations.Add(absl::StrCat(field, ".limits.twist_lower_rad"),
                    absl::StrFormat("joint %s: lower limit %g > upper limit %g",
-                                   QuotedId(joint.id), *limits.twist_lower_rad,
-                                   *limits.twist_upper_rad));
+                                   QuotedId(joint.id), lower, upper));
   }
 }
 

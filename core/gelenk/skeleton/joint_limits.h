@@ -18,8 +18,8 @@ struct JointLimits {
   // Spherical and free: largest angle between the joint's axis and its rest
   // direction, rad.
   std::optional<double> swing_cone_rad;
-  // Spherical and free: range of the twist about the axis, rad. May lie
-  // anywhere in [-2 pi, 2 pi]; at most one turn wide.
+  // Spherical and free: range of the twist about the axis, rad, anywhere in
+  // [-2 pi, 2 pi]. See TwistRangeOf.
   std::optional<double> twist_lower_rad;
   std::optional<double> twist_upper_rad;
   // rad/s, m/s and per second squared, per degree of freedom; streams only.
@@ -31,6 +31,15 @@ struct JointLimits {
            twist_upper_rad.has_value();
   }
 };
+
+struct TwistRange {
+  double lower_rad;
+  double upper_rad;
+};
+
+// The twist range that `limits` set: a side that is not given ends at half a
+// turn. None without a side, or where the range is a whole turn or more.
+std::optional<TwistRange> TwistRangeOf(const JointLimits& limits);
 
 // By how much `rotation` breaks the swing cone or twist range about `axis`,
 // rad; 0 inside.
