@@ -16,6 +16,9 @@ using kernel::NodeType;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Something must hold a joint that moves no effector in its present pose.
+constexpr double kLeastStiffness = 1e-6;
+
 void StoreMatrix(const Eigen::Matrix3d& m, kernel::Matrix3& out) {
   for (int i = 0; i < 9; ++i) out[i] = m(i / 3, i % 3);
 }
@@ -55,21 +58,20 @@ kernel::RotationLimit RotationLimitOf(const Joint& joint) {
   kernel::RotationLimit out = {};
   StoreVector(joint.axis, out.axis);
   out.swing_cone = limits.swing_cone_rad.value_or(kInfinity);
-  out.twist_lower = limits.twist_lower_rad.value_or(-kInfinity);
-  out.twist_upper = limits.twist_upper_rad.value_or(kInfinity);
-  constexpr double kHalfTurn = std::numbers::pi - 1e-3;
-  const bool bounded =
-      std::isfinite(out.twist_lower) || std::isfinite(out.twist_upper);
-  out.quick =
-      !bounded || (out.twist_lower > -kHalfTurn && out.twist_upper < kHalfTurn);
   const double half_cone = 0.5 * std::min(out.swing_cone, std::numbers::pi);
   out.swing_sine2 = std::isfinite(out.swing_cone)
                         ? std::sin(half_cone) * std::sin(half_cone)
                         : kInfinity;
-  out.twist_tangent_lower = bounded ? std::tan(0.5 * out.twist_lower)
-                                    : -std::numeric_limits<double>::max();
-  out.twist_tangent_upper = bounded ? std::tan(0.5 * out.twist_upper)
-                                    : std::numeric_limits<double>::max();
+  const std::optional<TwistRange> twist = TwistRangeOf(limits);
+  out.twist_lower = twist ? twist->lower_rad : -kInfinity;
+  out.twist_upper = twist ? twist->upper_rad : kInfinity;
+  constexpr double kHalfTurn = std::numbers::pi - 1e-3;
+  out.quick =
+      !twist || (out.twist_lower > -kHalfTurn && out.twist_upper < kHalfTurn);
+  out.twist_tangent_lower = twist ? std::tan(0.5 * out.twist_lower)
+                                  : -std::numeric_limits<double>::max();
+  out.twist_tangent_upper = twist ? std::tan(0.5 * out.twist_upper)
+                                  : std::numeric_limits<double>::max();
   return out;
 }
 
@@ -202,6 +204,7 @@ class SparseTreeBuilder {
     const Joint& joint = skeleton_.joint(j);
     const int count = VelocityCount(joint.type);
     column_of_joint_[j] = static_cast<int>(tree_.columns_.size());
+    tree_.joints_of_columns_.resize(tree_.columns_.size() + count, j);
     if (node_of_joint_[j] >= 0) {
       tree_.nodes_[node_of_joint_[j]].axis = column_of_joint_[j];
     }
@@ -213,39 +216,17 @@ class SparseTreeBuilder {
 
   kernel::Column MakeColumn(int j, int k) const {
     const Joint& joint = skeleton_.joint(j);
-    const JointLimits& limits = joint.limits;
     kernel::Column column = {};
     column.node = node_of_joint_[j];
     const bool quaternion = joint.type == JointType::kSpherical ||
                             (joint.type == JointType::kFree && k >= 3);
     column.position = quaternion ? -1 : skeleton_.span(j).position_offset + k;
-    const bool bounded =
-        !quaternion && k < static_cast<int>(limits.lower.size());
-    column.lower = bounded ? limits.lower[k] : -kInfinity;
-    column.upper = bounded ? limits.upper[k] : kInfinity;
-    column.stiffness = joint.stiffness.empty() ? 1 : joint.stiffness[k];
-    FoldMimicLimits(j, column);
+    const PositionBounds& bounds = skeleton_.position_bounds();
+    column.lower = quaternion ? -kInfinity : bounds.lower[column.position];
+    column.upper = quaternion ? kInfinity : bounds.upper[column.position];
+    column.stiffness = std::max(
+        joint.stiffness.empty() ? 1 : joint.stiffness[k], kLeastStiffness);
     return column;
-  }
-
-  // Limits of the joints that follow `j` bound it, too.
-  void FoldMimicLimits(int j, kernel::Column& column) const {
-    for (int i = 0; i < skeleton_.joint_count(); ++i) {
-      if (skeleton_.span(i).mimicked != j) continue;
-      const Joint& follower = skeleton_.joint(i);
-      const double multiplier = follower.mimic->multiplier;
-      if (follower.limits.lower.empty() || multiplier == 0) continue;
-      double lower =
-          (follower.limits.lower[0] - follower.mimic->offset) / multiplier;
-      double upper =
-          (follower.limits.upper[0] - follower.mimic->offset) / multiplier;
-      if (lower > upper) std::swap(lower, upper);
-      lower = std::max(lower, column.lower);
-      upper = std::min(upper, column.upper);
-      if (lower > upper) continue;  // contradictory: the joint's own stand
-      column.lower = lower;
-      column.upper = upper;
-    }
   }
 
   void AddMimicAxes() {
@@ -382,7 +363,7 @@ size_t SparseTree::ByteSize() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return sizeof(*this) + bytes(nodes_) + bytes(rotation_limits_) +
          bytes(columns_) + bytes(path_columns_) + bytes(followers_) +
-         bytes(tasks_) + bytes(joints_of_nodes_);
+         bytes(tasks_) + bytes(joints_of_nodes_) + bytes(joints_of_columns_);
 }
 
 }  // namespace gelenk

@@ -32,6 +32,9 @@ class SparseTree {
   // Index in the skeleton of the joint behind a node.
   int joint_of(int node) const { return joints_of_nodes_[node]; }
 
+  // Index in the skeleton of the joint whose degree of freedom a column is.
+  int joint_of_column(int column) const { return joints_of_columns_[column]; }
+
   size_t ByteSize() const;
 
  private:
@@ -44,6 +47,7 @@ class SparseTree {
   std::vector<kernel::PathFollower> followers_;
   std::vector<kernel::Task> tasks_;
   std::vector<int> joints_of_nodes_;
+  std::vector<int> joints_of_columns_;
   int axis_count_ = 0;
   int h_size_ = 0;
   int j_size_ = 0;

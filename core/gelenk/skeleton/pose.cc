@@ -35,11 +35,6 @@ void CheckQuaternion(int at, VectorView positions, Violations& violations) {
                                  positions[at + 2], positions[at + 3]));
 }
 
-// The box limits of `joint`; null when it has none.
-const JointLimits* BoxOf(const Joint& joint) {
-  return joint.limits.lower.empty() ? nullptr : &joint.limits;
-}
-
 }  // namespace
 
 Eigen::VectorXd NeutralPositions(const Skeleton& skeleton) {
@@ -111,17 +106,16 @@ void Difference(const Skeleton& skeleton, const ConstVectorView& from,
 }
 
 double ClampToLimits(const Skeleton& skeleton, VectorView positions) {
+  const PositionBounds& bounds = skeleton.position_bounds();
   double largest = 0;
+  for (int i = 0; i < positions.size(); ++i) {
+    const double inside =
+        std::clamp(positions[i], bounds.lower[i], bounds.upper[i]);
+    largest = std::max(largest, std::abs(positions[i] - inside));
+    positions[i] = inside;
+  }
   ForEachMoving(skeleton, [&](int i, int q, int) {
     const Joint& joint = skeleton.joint(i);
-    if (const JointLimits* box = BoxOf(joint)) {
-      for (size_t k = 0; k < box->lower.size(); ++k) {
-        double& value = positions[q + k];
-        const double inside = std::clamp(value, box->lower[k], box->upper[k]);
-        largest = std::max(largest, std::abs(value - inside));
-        value = inside;
-      }
-    }
     const int start = QuaternionStart(joint.type);
     if (start < 0 || !joint.limits.HasRotationLimits()) return;
     const Eigen::Quaterniond rotation =
@@ -138,6 +132,7 @@ double ClampToLimits(const Skeleton& skeleton, VectorView positions) {
 
 double LimitExcess(const Skeleton& skeleton, const ConstVectorView& positions,
                    int* joint) {
+  const PositionBounds& bounds = skeleton.position_bounds();
   double largest = 0;
   int worst = -1;
   const auto note = [&](int i, double excess) {
@@ -147,11 +142,9 @@ double LimitExcess(const Skeleton& skeleton, const ConstVectorView& positions,
   };
   ForEachMoving(skeleton, [&](int i, int q, int) {
     const Joint& moving = skeleton.joint(i);
-    if (const JointLimits* box = BoxOf(moving)) {
-      for (size_t k = 0; k < box->lower.size(); ++k) {
-        note(i, box->lower[k] - positions[q + k]);
-        note(i, positions[q + k] - box->upper[k]);
-      }
+    for (int k = q; k < q + PositionCount(moving.type); ++k) {
+      note(i, bounds.lower[k] - positions[k]);
+      note(i, positions[k] - bounds.upper[k]);
     }
     const int start = QuaternionStart(moving.type);
     if (start < 0) return;

@@ -41,8 +41,9 @@ void Integrate(const Skeleton& skeleton, const ConstVectorView& positions,
 void Difference(const Skeleton& skeleton, const ConstVectorView& from,
                 const ConstVectorView& to, VectorView result);
 
-// Moves each coordinate to the nearest one inside its limits. Returns the
-// largest move, rad or m; 0 when q was inside.
+// Moves each coordinate to the nearest one inside its limits, those of joints
+// that mimic it included. Returns the largest move, rad or m; 0 when q was
+// inside.
 double ClampToLimits(const Skeleton& skeleton, VectorView positions);
 
 // By how much q breaks its limits at worst, rad or m; 0 inside. `joint` (may be

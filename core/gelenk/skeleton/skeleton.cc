@@ -23,7 +23,7 @@ std::optional<EffectorFrame> Skeleton::FindEffector(
 }
 
 size_t Skeleton::ByteSize() const {
-  size_t bytes = sizeof(*this) + rest_positions_.size() * sizeof(double);
+  size_t bytes = sizeof(*this) + 3 * position_count_ * sizeof(double);
   for (const Joint& joint : joints_) {
     const JointLimits& limits = joint.limits;
     bytes += sizeof(Joint) + sizeof(JointSpan) + joint.id.capacity() +

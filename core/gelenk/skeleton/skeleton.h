@@ -13,6 +13,7 @@
 #include "absl/strings/string_view.h"
 #include "absl/types/span.h"
 #include "gelenk/skeleton/joint.h"
+#include "gelenk/skeleton/position_bounds.h"
 
 namespace gelenk {
 
@@ -53,6 +54,10 @@ class Skeleton {
   // What people call neutral (a T-pose): all zeros and identities unless given.
   const Eigen::VectorXd& rest_positions() const { return rest_positions_; }
 
+  // The range of each number of q by the limits of its joint and of those that
+  // mimic it; infinite where there are none.
+  const PositionBounds& position_bounds() const { return position_bounds_; }
+
   // Bytes that this skeleton holds, for quotas.
   size_t ByteSize() const;
 
@@ -64,6 +69,7 @@ class Skeleton {
   std::vector<JointSpan> spans_;
   std::vector<EndEffector> end_effectors_;
   Eigen::VectorXd rest_positions_;
+  PositionBounds position_bounds_;
   Eigen::Vector3d up_ = Eigen::Vector3d::UnitY();
   int position_count_ = 0;
   int velocity_count_ = 0;

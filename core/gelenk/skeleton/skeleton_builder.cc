@@ -170,6 +170,8 @@ void SkeletonBuilder::PlaceJoints(const std::vector<int>& order,
     skeleton.joints_.push_back(std::move(joint));
     skeleton.spans_.push_back(span);
   }
+  skeleton.position_bounds_ = BoundPositions(skeleton.joints_, skeleton.spans_,
+                                             skeleton.position_count_);
 }
 
 void SkeletonBuilder::PlaceRestPositions(const std::vector<int>& order,
