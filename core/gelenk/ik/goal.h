@@ -43,7 +43,7 @@ struct PoseGoal {
   std::string end_effector_id;
   // world_from_end_effector.
   RigidTransform world_pose;
-  // What one radian counts against one metre.
+  // What one radian counts against one metre; 0 leaves the rotation free.
   double rotation_scale_m_per_rad = 1;
   AxisMask axes;
 };

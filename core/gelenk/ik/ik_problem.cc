@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "absl/container/flat_hash_set.h"
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/skeleton/joint_check.h"
 
 namespace gelenk {
 namespace {
@@ -58,9 +58,8 @@ absl::StatusOr<IkProblem> IkProblem::Create(
     const std::string field = absl::StrCat("goals[", i, "]");
     violations.AddStatus(field, CheckAndNormalize(goal));
     if (!ids.insert(goal.id).second) {
-      violations.Add(
-          absl::StrCat(field, ".goal_id"),
-          absl::StrCat("duplicate \"", absl::CHexEscape(goal.id), "\""));
+      violations.Add(absl::StrCat(field, ".goal_id"),
+                     absl::StrCat("duplicate ", QuotedId(goal.id)));
     }
     const absl::string_view effector_id = EffectorId(goal.kind);
     const std::optional<EffectorFrame> effector =
@@ -68,8 +67,7 @@ absl::StatusOr<IkProblem> IkProblem::Create(
     if (!effector) {
       violations.Add(
           absl::StrCat(field, ".", GoalKindName(goal.kind), ".end_effector_id"),
-          absl::StrCat("no end effector or joint \"",
-                       absl::CHexEscape(effector_id), "\""));
+          absl::StrCat("no end effector or joint ", QuotedId(effector_id)));
       continue;
     }
     tasks.push_back(
@@ -104,7 +102,7 @@ absl::Status IkProblem::CheckTarget(int goal_index, GoalTarget& target) const {
     Violations violations;
     violations.Add("target",
                    absl::StrCat("does not fit the ", GoalKindName(goal.kind),
-                                " goal \"", absl::CHexEscape(goal.id), "\""));
+                                " goal ", QuotedId(goal.id)));
     return violations.ToStatus();
   }
   return CheckAndNormalize(target);

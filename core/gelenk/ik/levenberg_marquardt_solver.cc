@@ -95,19 +95,27 @@ kernel::Workspace Carve(const kernel::TreeLayout& tree, Carver& carver) {
   return w;
 }
 
+// By its own limits or those of a joint that moves along.
 bool IsOnLimit(const Skeleton& skeleton, int j,
                const ConstVectorView& positions) {
-  const Joint& joint = skeleton.joint(j);
-  const JointLimits& limits = joint.limits;
-  const int q = skeleton.span(j).position_offset;
-  if (q < 0) return false;
-  for (size_t k = 0; k < limits.lower.size(); ++k) {
-    if (positions[q + k] <= limits.lower[k] + kOnBound ||
-        positions[q + k] >= limits.upper[k] - kOnBound) {
+  const PositionBounds& bounds = skeleton.position_bounds();
+  const int mimicked = skeleton.span(j).mimicked;
+  const int owner = mimicked < 0 ? j : mimicked;
+  const int begin = skeleton.span(owner).position_offset;
+  const int end = begin + PositionCount(skeleton.joint(owner).type);
+  for (int q = begin; q < end; ++q) {
+    if (positions[q] <= bounds.lower[q] + kOnBound ||
+        positions[q] >= bounds.upper[q] - kOnBound) {
       return true;
     }
   }
   return false;
+}
+
+using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
+
+ConstVectorMap View(const std::vector<double>& numbers) {
+  return ConstVectorMap(numbers.data(), numbers.size());
 }
 
 }  // namespace
@@ -115,8 +123,8 @@ bool IsOnLimit(const Skeleton& skeleton, int j,
 LevenbergMarquardtSolver::LevenbergMarquardtSolver(InstructionSet level)
     : level_(level), attempt_(AttemptFor(level)) {}
 
-void LevenbergMarquardtSolver::Reserve(const kernel::TreeLayout& tree,
-                                       int position_count) {
+void LevenbergMarquardtSolver::Reserve(const IkProblem& problem,
+                                       const kernel::TreeLayout& tree) {
   Carver count(nullptr);
   Carve(tree, count);
   const size_t wanted = count.used() + kernel::kRowAlignment;
@@ -130,7 +138,8 @@ void LevenbergMarquardtSolver::Reserve(const kernel::TreeLayout& tree,
   // The padding of J's rows is read, never written.
   std::fill(workspace_.jacobian,
             workspace_.jacobian + kernel::PaddedRow(tree.j_size), 0.0);
-  if (start_.size() != position_count) start_.resize(position_count);
+  start_.resize(problem.skeleton().position_count());
+  change_.resize(problem.skeleton().velocity_count());
 }
 
 void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
@@ -139,8 +148,8 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
                                      SolveReport& report) {
   const kernel::TreeLayout tree = problem.tree().Layout();
   const Skeleton& skeleton = problem.skeleton();
-  Reserve(tree, skeleton.position_count());
-  start_ = positions;
+  Reserve(problem, tree);
+  std::copy(positions.begin(), positions.end(), start_.begin());
   ClampToLimits(skeleton, positions);
 
   kernel::Settings settings = SettingsFor(problem, options);
@@ -151,32 +160,69 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
   report.iteration_count = attempt.iterations;
   report.restart_count = 0;
   if (attempt.end != kernel::AttemptEnd::kConverged && budget > 0) {
-    StartSampler sampler(options.restart_seed);
-    best_ = positions;
-    double best_energy = attempt.energy;
-    while (attempt.end != kernel::AttemptEnd::kConverged &&
-           report.restart_count < budget) {
-      ++report.restart_count;
-      sampler.Sample(skeleton, start_, positions);
-      attempt = attempt_(tree, problem.targets().data(), settings, workspace_,
-                         positions.data());
-      report.iteration_count += attempt.iterations;
-      if (attempt.energy < best_energy) {
-        best_energy = attempt.energy;
-        best_ = positions;
-      }
-    }
-    if (attempt.end != kernel::AttemptEnd::kConverged) {
-      // Nothing reached: finish the best attempt with patience.
-      positions = best_;
-      settings.impatient = false;
-      attempt = attempt_(tree, problem.targets().data(), settings, workspace_,
-                         positions.data());
-      report.iteration_count += attempt.iterations;
-    }
-    AlignHemispheres(skeleton, start_, positions);
+    attempt = Restart(problem, settings, budget, options.restart_seed, attempt,
+                      positions, report);
   }
+  AlignHemispheres(skeleton, View(start_), positions);
   Report(problem, options, tree, attempt, positions, report);
+}
+
+void LevenbergMarquardtSolver::FindMovingJoints(
+    const IkProblem& problem, const kernel::TreeLayout& tree) {
+  moves_.assign(problem.skeleton().joint_count(), 0);
+  for (int t = 0; t < tree.task_count; ++t) {
+    if (!problem.targets()[t].active) continue;
+    const kernel::Task& task = tree.tasks[t];
+    const kernel::PathColumn* path = tree.path_columns + task.path_begin;
+    const auto mark = [&](int place) {
+      moves_[problem.tree().joint_of_column(path[place].column)] = 1;
+    };
+    for (int k = 0; k < task.path_size; ++k) {
+      if (!path[k].absent) mark(k);
+    }
+    for (int f = 0; f < task.follower_count; ++f) {
+      mark(tree.followers[task.follower_begin + f].place);
+    }
+  }
+  moving_joints_.clear();
+  for (size_t j = 0; j < moves_.size(); ++j) {
+    if (moves_[j] != 0) moving_joints_.push_back(static_cast<int>(j));
+  }
+}
+
+kernel::Attempt LevenbergMarquardtSolver::Restart(const IkProblem& problem,
+                                                  kernel::Settings settings,
+                                                  int budget, int64_t seed,
+                                                  kernel::Attempt attempt,
+                                                  VectorView positions,
+                                                  SolveReport& report) {
+  const kernel::TreeLayout tree = problem.tree().Layout();
+  const auto run = [&] {
+    attempt = attempt_(tree, problem.targets().data(), settings, workspace_,
+                       positions.data());
+    report.iteration_count += attempt.iterations;
+  };
+  FindMovingJoints(problem, tree);
+  StartSampler sampler(seed);
+  best_.assign(positions.begin(), positions.end());
+  double best_energy = attempt.energy;
+  while (attempt.end != kernel::AttemptEnd::kConverged &&
+         report.restart_count < budget) {
+    ++report.restart_count;
+    sampler.Sample(problem.skeleton(), moving_joints_, View(start_), positions);
+    run();
+    if (attempt.energy < best_energy) {
+      best_energy = attempt.energy;
+      best_.assign(positions.begin(), positions.end());
+    }
+  }
+  if (attempt.end != kernel::AttemptEnd::kConverged) {
+    // Nothing reached: finish the best attempt with patience.
+    positions = View(best_);
+    settings.impatient = false;
+    run();
+  }
+  return attempt;
 }
 
 void LevenbergMarquardtSolver::Report(const IkProblem& problem,
@@ -194,6 +240,7 @@ void LevenbergMarquardtSolver::Report(const IkProblem& problem,
     report.rotation_errors_rad[t] = 2 * std::asin(std::min(half_chord, 1.0));
   }
   report.limited_joints.clear();
+  report.limited_joints.reserve(tree.node_count);
   report.change = 0;
   if (options.detail == ReportDetail::kBrief) return;
 
@@ -209,7 +256,9 @@ void LevenbergMarquardtSolver::Report(const IkProblem& problem,
       report.limited_joints.push_back(joint);
     }
   }
-  report.change = WeightedChange(problem, start_, positions, change_);
+  report.change = WeightedChange(
+      problem, View(start_), positions,
+      Eigen::Map<Eigen::VectorXd>(change_.data(), change_.size()));
   if (options.detail == ReportDetail::kDiagnosis) {
     Diagnose(problem, positions, report);
   }

@@ -17,7 +17,7 @@
 #ifndef GELENK_IK_LEVENBERG_MARQUARDT_SOLVER_H_
 #define GELENK_IK_LEVENBERG_MARQUARDT_SOLVER_H_
 
-#include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "gelenk/ik/ik_problem.h"
@@ -46,19 +46,27 @@ class LevenbergMarquardtSolver {
   InstructionSet instruction_set() const { return level_; }
 
  private:
-  void Reserve(const kernel::TreeLayout& tree, int position_count);
+  void Reserve(const IkProblem& problem, const kernel::TreeLayout& tree);
+  // The joints that move a goal that is on.
+  void FindMovingJoints(const IkProblem& problem,
+                        const kernel::TreeLayout& tree);
+  kernel::Attempt Restart(const IkProblem& problem, kernel::Settings settings,
+                          int budget, int64_t seed, kernel::Attempt attempt,
+                          VectorView positions, SolveReport& report);
   void Report(const IkProblem& problem, const SolverOptions& options,
               const kernel::TreeLayout& tree, const kernel::Attempt& attempt,
               const ConstVectorView& positions, SolveReport& report);
 
   InstructionSet level_;
   kernel::AttemptFunction attempt_;
+  // Grow to the largest problem seen and stay.
   std::vector<double> memory_;
   kernel::Workspace workspace_ = {};
-  Eigen::VectorXd start_;
-  Eigen::VectorXd best_;
-  Eigen::VectorXd change_;
-  std::vector<double> best_errors2_;
+  std::vector<double> start_;
+  std::vector<double> best_;
+  std::vector<double> change_;
+  std::vector<uint8_t> moves_;  // per joint
+  std::vector<int> moving_joints_;
 };
 
 }  // namespace gelenk

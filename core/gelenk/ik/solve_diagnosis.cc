@@ -31,10 +31,9 @@ int Rank(const Eigen::MatrixXd& j) {
 }  // namespace
 
 double WeightedChange(const IkProblem& problem, const ConstVectorView& from,
-                      const ConstVectorView& to, Eigen::VectorXd& scratch) {
+                      const ConstVectorView& to, VectorView change) {
   const Skeleton& skeleton = problem.skeleton();
-  scratch.resize(skeleton.velocity_count());
-  Difference(skeleton, from, to, scratch);
+  Difference(skeleton, from, to, change);
   double sum = 0;
   for (int i = 0; i < skeleton.joint_count(); ++i) {
     const int v = skeleton.span(i).velocity_offset;
@@ -42,7 +41,7 @@ double WeightedChange(const IkProblem& problem, const ConstVectorView& from,
     const Joint& joint = skeleton.joint(i);
     for (int k = 0; k < VelocityCount(joint.type); ++k) {
       const double stiffness = joint.stiffness.empty() ? 1 : joint.stiffness[k];
-      sum += stiffness * scratch[v + k] * scratch[v + k];
+      sum += stiffness * change[v + k] * change[v + k];
     }
   }
   return std::sqrt(sum);
@@ -66,7 +65,8 @@ void Diagnose(const IkProblem& problem, const ConstVectorView& positions,
       const bool counts = target.row_counts[k] > 0 &&
                           !std::holds_alternative<RotationGoal>(kind);
       if (counts) translation_rows.push_back(jacobian.row(k));
-      if (!std::holds_alternative<PositionGoal>(kind)) {
+      if (!std::holds_alternative<PositionGoal>(kind) &&
+          target.row_scale[3 + k] > 0) {
         rotation_rows.push_back(jacobian.row(3 + k));
       }
     }

@@ -16,9 +16,9 @@ namespace gelenk {
 inline constexpr double kRankCutoff = 1e-9;
 
 // sqrt(sum over degrees of freedom of stiffness * change^2) between two poses;
-// `scratch` is resized once.
+// `change` (size velocity_count) receives their difference.
 double WeightedChange(const IkProblem& problem, const ConstVectorView& from,
-                      const ConstVectorView& to, Eigen::VectorXd& scratch);
+                      const ConstVectorView& to, VectorView change);
 
 // Fills rank, free_velocity_count and the manipulabilities of `report`. Takes
 // the unweighted rows of all goals that are on. Allocates.

@@ -1,5 +1,6 @@
 #include "gelenk/ik/start_sampler.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -29,42 +30,42 @@ double StartSampler::Uniform(double lower, double upper) {
 }
 
 void StartSampler::Sample(const Skeleton& skeleton,
+                          absl::Span<const int> joints,
                           const ConstVectorView& start, VectorView positions) {
-  for (int i = 0; i < skeleton.joint_count(); ++i) {
-    const int q = skeleton.span(i).position_offset;
-    if (q < 0) continue;
-    const Joint& joint = skeleton.joint(i);
-    const bool has_quaternion =
-        joint.type == JointType::kSpherical || joint.type == JointType::kFree;
-    const int scalars = joint.type == JointType::kFree
-                            ? 3
-                            : (has_quaternion ? 0 : PositionCount(joint.type));
-    for (int k = 0; k < scalars; ++k) {
-      const bool angle = joint.type == JointType::kRevolute ||
-                         (joint.type == JointType::kPlanar && k == 2);
-      const double reach = angle ? std::numbers::pi : kTranslationReach_m;
-      double lower = angle ? -reach : start[q + k] - reach;
-      double upper = angle ? reach : start[q + k] + reach;
-      if (!joint.limits.lower.empty()) {
-        if (std::isfinite(joint.limits.lower[k])) {
-          lower = joint.limits.lower[k];
-        }
-        if (std::isfinite(joint.limits.upper[k])) {
-          upper = joint.limits.upper[k];
-        }
-      }
-      // A bound on one side only may lie beyond the default of the other.
-      positions[q + k] = lower <= upper ? Uniform(lower, upper) : lower;
-    }
-    if (!has_quaternion) continue;
-    const int at = q + scalars;
-    const Eigen::Vector3d turn(Uniform(-1, 1), Uniform(-1, 1), Uniform(-1, 1));
-    const Eigen::Quaterniond drawn =
-        QuaternionXyzw(start.data() + at) * ExpRotation(kRotationReach * turn);
-    StoreXyzw(ClampRotation(joint.limits, joint.axis, drawn.normalized()),
-              positions.data() + at);
+  for (int joint : joints) SampleJoint(skeleton, joint, start, positions);
+}
+
+void StartSampler::SampleJoint(const Skeleton& skeleton, int index,
+                               const ConstVectorView& start,
+                               VectorView positions) {
+  const Joint& joint = skeleton.joint(index);
+  const PositionBounds& bounds = skeleton.position_bounds();
+  const int q = skeleton.span(index).position_offset;
+  const bool has_quaternion =
+      joint.type == JointType::kSpherical || joint.type == JointType::kFree;
+  const int scalars = PositionCount(joint.type) - (has_quaternion ? 4 : 0);
+  for (int k = 0; k < scalars; ++k) {
+    const bool angle = joint.type == JointType::kRevolute ||
+                       (joint.type == JointType::kPlanar && k == 2);
+    const double reach = angle ? std::numbers::pi : kTranslationReach_m;
+    const double center = angle ? 0 : start[q + k];
+    double lower = bounds.lower[q + k];
+    double upper = bounds.upper[q + k];
+    // A bound on one side only may lie beyond the default of the other.
+    if (!std::isfinite(lower)) lower = std::min(center - reach, upper);
+    if (!std::isfinite(upper)) upper = std::max(center + reach, lower);
+    positions[q + k] = Uniform(lower, upper);
   }
-  ClampToLimits(skeleton, positions);
+  if (!has_quaternion) return;
+  const int at = q + scalars;
+  const double x = Uniform(-1, 1);
+  const double y = Uniform(-1, 1);
+  const double z = Uniform(-1, 1);
+  const Eigen::Quaterniond drawn =
+      QuaternionXyzw(start.data() + at) *
+      ExpRotation(kRotationReach * Eigen::Vector3d(x, y, z));
+  StoreXyzw(ClampRotation(joint.limits, joint.axis, drawn.normalized()),
+            positions.data() + at);
 }
 
 }  // namespace gelenk

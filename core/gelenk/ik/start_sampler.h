@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "absl/types/span.h"
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
@@ -13,13 +14,16 @@ class StartSampler {
  public:
   explicit StartSampler(int64_t seed);
 
-  // Draws a pose inside the limits: uniform where a coordinate is bounded or
-  // an angle; near `start` where it is not (translations, orientations), since
-  // the last known place of an actor is the best guess there is.
-  void Sample(const Skeleton& skeleton, const ConstVectorView& start,
-              VectorView positions);
+  // Draws numbers inside the limits for the joints of these indices, and leaves
+  // the others: uniform where a coordinate is bounded or an angle; near `start`
+  // where it is not (translations, orientations), since the last known place of
+  // an actor is the best guess there is.
+  void Sample(const Skeleton& skeleton, absl::Span<const int> joints,
+              const ConstVectorView& start, VectorView positions);
 
  private:
+  void SampleJoint(const Skeleton& skeleton, int index,
+                   const ConstVectorView& start, VectorView positions);
   // Uniform in [lower, upper).
   double Uniform(double lower, double upper);
 

@@ -329,7 +329,9 @@ class Solver {
         }
         work_.position_errors2[t] = sum;
       }
-      if (task.row_end == 6) {
+      if (task.row_end == 6 && target.row_scale[3] == 0) {
+        for (int k = 3; k < 6; ++k) e[k] = 0;
+      } else if (task.row_end == 6) {
         double turned[9];
         Multiply(rotation, task.node_from_effector_rotation, turned);
         work_.rotation_errors2[t] =
@@ -376,8 +378,9 @@ class Solver {
 
   bool AllWithinTolerance() const {
     for (int t = 0; t < tree_.task_count; ++t) {
-      if (work_.position_errors2[t] > settings_.position_tolerance2 ||
-          work_.rotation_errors2[t] > settings_.rotation_tolerance2) {
+      // So written that NaN is not within.
+      if (!(work_.position_errors2[t] <= settings_.position_tolerance2 &&
+            work_.rotation_errors2[t] <= settings_.rotation_tolerance2)) {
         return false;
       }
     }
