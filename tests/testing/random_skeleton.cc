@@ -27,10 +27,14 @@ int BoundedCount(JointType type) {
   return 0;
 }
 
+// A cone, with or without a twist range. A range alone would be ill-posed: near
+// a swing of pi the twist turns arbitrarily fast.
 void LimitRotation(Random& random, JointLimits& limits) {
-  const bool cone = WithProbability(random, 0.7);
-  if (cone) limits.swing_cone_rad = Uniform(random, 0.05, kPi);
-  if (cone && WithProbability(random, 0.5)) return;
+  if (WithProbability(random, 0.4)) {
+    limits.swing_cone_rad = Uniform(random, 0.05, kPi);
+    return;
+  }
+  limits.swing_cone_rad = Uniform(random, 0.05, 2.5);
   // Anywhere it may lie, across pi too.
   limits.twist_lower_rad = Uniform(random, -2 * kPi, kPi);
   limits.twist_upper_rad = *limits.twist_lower_rad + Uniform(random, 0, kPi);

@@ -22,8 +22,8 @@ struct SkeletonRecipe {
   double branching = 0.3;
   // That a revolute or prismatic joint follows an earlier one.
   double mimicking = 0.2;
-  // That a joint has limits: around the neutral pose for numbers, swing cone,
-  // twist range or both for rotations.
+  // That a joint has limits: around the neutral pose for numbers, a swing cone
+  // without or with a twist range for rotations.
   double limited = 0.6;
   // That a limited number is frozen: lower == upper.
   double frozen = 0.1;

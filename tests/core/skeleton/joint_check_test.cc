@@ -250,6 +250,16 @@ TEST(JointCheckTest, LowerTwistIsNotAboveUpperTwist) {
                           "lower limit 0.5 > upper limit 0.25"));
 }
 
+TEST(JointCheckTest, ATwistSideThatIsNotGivenEndsAtHalfATurn) {
+  Joint joint = JointOf(JointType::kSpherical);
+  joint.limits.twist_lower_rad = 3;
+  EXPECT_THAT(Lines(joint), IsEmpty());
+  joint.limits.twist_lower_rad = 4;
+  EXPECT_THAT(Lines(joint),
+              ElementsAre("joints[4].limits.twist_lower_rad: joint \"knee\": "
+                          "lower limit 4 > upper limit 3.14159"));
+}
+
 TEST(JointCheckTest, RatesAndStiffnessArePerDegreeOfFreedom) {
   Joint joint = JointOf(JointType::kSpherical);
   joint.limits.max_velocity = {1, 2, 3};

@@ -142,9 +142,30 @@ TEST(RotationLimitTest, TwistMayBeOpenOnOneSide) {
   JointLimits below;
   below.twist_upper_rad = 0.5;
   EXPECT_NEAR(Excess(below, Rotation(0.3, -3)), 0, kRounding);
+  EXPECT_NEAR(Excess(below, Rotation(0.3, 0.75)), 0.25, kRounding);
   JointLimits above;
   above.twist_lower_rad = 0.5;
   EXPECT_NEAR(Excess(above, Rotation(0.3, 3)), 0, kRounding);
+  EXPECT_NEAR(Excess(above, Rotation(0.3, 0.25)), 0.25, kRounding);
+}
+
+TEST(TwistRangeTest, ASideThatIsNotGivenEndsAtHalfATurn) {
+  JointLimits limits;
+  EXPECT_FALSE(TwistRangeOf(limits).has_value());
+  limits.twist_lower_rad = -1;
+  EXPECT_EQ(TwistRangeOf(limits)->lower_rad, -1);
+  EXPECT_EQ(TwistRangeOf(limits)->upper_rad, kPi);
+  limits.twist_lower_rad.reset();
+  limits.twist_upper_rad = 1;
+  EXPECT_EQ(TwistRangeOf(limits)->lower_rad, -kPi);
+  EXPECT_EQ(TwistRangeOf(limits)->upper_rad, 1);
+}
+
+TEST(TwistRangeTest, AWholeTurnIsNone) {
+  EXPECT_TRUE(TwistRangeOf(Twist(0, 2 * kPi - 1e-3)).has_value());
+  EXPECT_FALSE(TwistRangeOf(Twist(0, 2 * kPi)).has_value());
+  EXPECT_FALSE(TwistRangeOf(Twist(-3.1415927, 3.1415927)).has_value());
+  EXPECT_FALSE(TwistRangeOf(Twist(-6, 6)).has_value());
 }
 
 // A swing of pi has no twist of its own.

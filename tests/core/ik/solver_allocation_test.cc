@@ -1,0 +1,190 @@
+// A warm solve takes no memory. This executable counts every malloc of the code
+// linked into it (Eigen's too, by the linker's --wrap) and every operator new.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/kinematics/jacobian.h"
+#include "tests/testing/example_skeletons.h"
+#include "tests/testing/ik_targets.h"
+#include "tests/testing/random_pose.h"
+#include "tests/testing/random_skeleton.h"
+
+namespace {
+
+std::atomic<int> allocation_count = 0;
+
+}  // namespace
+
+extern "C" {
+void* __real_malloc(size_t size);
+void* __real_calloc(size_t count, size_t size);
+void* __real_realloc(void* memory, size_t size);
+void* __real_aligned_alloc(size_t alignment, size_t size);
+
+void* __wrap_malloc(size_t size) {
+  ++allocation_count;
+  return __real_malloc(size);
+}
+void* __wrap_calloc(size_t count, size_t size) {
+  ++allocation_count;
+  return __real_calloc(count, size);
+}
+void* __wrap_realloc(void* memory, size_t size) {
+  ++allocation_count;
+  return __real_realloc(memory, size);
+}
+void* __wrap_aligned_alloc(size_t alignment, size_t size) {
+  ++allocation_count;
+  return __real_aligned_alloc(alignment, size);
+}
+}
+
+void* operator new(size_t size) {
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void* operator new(size_t size, std::align_val_t alignment) {
+  const size_t step = static_cast<size_t>(alignment);
+  const size_t whole_steps = (size + step - 1) / step * step;
+  if (void* memory = std::aligned_alloc(step, whole_steps)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace gelenk {
+namespace {
+
+using ::gelenk::testing::PandaArm;
+using ::gelenk::testing::PoseGoalsAt;
+using ::gelenk::testing::Random;
+using ::gelenk::testing::RandomPose;
+using ::gelenk::testing::RandomPoseWithinLimits;
+using ::gelenk::testing::RandomSkeleton;
+using ::gelenk::testing::StartNear;
+
+// A stream: targets along the way between two poses, some out of reach.
+struct Stream {
+  IkProblem problem;
+  std::vector<std::vector<GoalTarget>> frames;
+  Eigen::VectorXd positions;
+  SolveReport report;
+};
+
+Stream MakeStream(Random& random, std::shared_ptr<const Skeleton> skeleton) {
+  const Eigen::VectorXd start = RandomPoseWithinLimits(random, *skeleton);
+  Stream stream = {
+      IkProblem::Create(skeleton, PoseGoalsAt(*skeleton, start)).value(),
+      {},
+      start,
+      {}};
+  for (int frame = 0; frame < 20; ++frame) {
+    const Eigen::VectorXd pose = frame % 4 == 3
+                                     ? RandomPose(random, *skeleton)
+                                     : StartNear(random, *skeleton, start, 0.2);
+    stream.frames.emplace_back();
+    for (const Goal& goal : PoseGoalsAt(*skeleton, pose)) {
+      stream.frames.back().push_back(TargetOf(goal.kind));
+    }
+  }
+  return stream;
+}
+
+void SolveFrame(LevenbergMarquardtSolver& solver, Stream& stream, int frame,
+                const SolverOptions& options) {
+  std::vector<GoalTarget>& targets = stream.frames[frame];
+  for (size_t i = 0; i < targets.size(); ++i) {
+    const int goal = static_cast<int>(i);
+    ASSERT_TRUE(stream.problem.CheckTarget(goal, targets[i]).ok());
+    stream.problem.SetTarget(goal, targets[i]);
+  }
+  solver.Solve(stream.problem, options, SolveStart::kWarm, stream.positions,
+               stream.report);
+}
+
+int AllocationsOfWarmFrames(std::vector<Stream>& streams,
+                            const SolverOptions& options) {
+  LevenbergMarquardtSolver solver;
+  for (Stream& stream : streams) SolveFrame(solver, stream, 0, options);
+  const int before = allocation_count;
+  for (int frame = 1; frame < 20; ++frame) {
+    for (Stream& stream : streams) SolveFrame(solver, stream, frame, options);
+  }
+  return allocation_count - before;
+}
+
+TEST(SolverAllocationTest, TheCounterCounts) {
+  const int before = allocation_count;
+  const auto number = std::make_unique<int>(7);
+  const int after_new = allocation_count;
+  const Eigen::VectorXd vector = Eigen::VectorXd::Constant(100, *number);
+  EXPECT_EQ(after_new - before, 1);
+  EXPECT_EQ(allocation_count - after_new, vector.sum() == 700 ? 1 : 0);
+}
+
+TEST(SolverAllocationTest, WarmFramesOfAnArm) {
+  Random random(1);
+  std::vector<Stream> streams;
+  streams.push_back(MakeStream(random, PandaArm()));
+  EXPECT_EQ(AllocationsOfWarmFrames(streams, {}), 0);
+}
+
+TEST(SolverAllocationTest, WarmFramesWithRestarts) {
+  Random random(2);
+  SolverOptions options;
+  options.max_restarts = 3;
+  std::vector<Stream> streams;
+  streams.push_back(MakeStream(random, PandaArm()));
+  // The first frame may have needed none.
+  LevenbergMarquardtSolver solver;
+  for (int frame = 0; frame < 4; ++frame) {
+    SolveFrame(solver, streams[0], frame, options);
+  }
+  const int before = allocation_count;
+  for (int frame = 4; frame < 20; ++frame) {
+    SolveFrame(solver, streams[0], frame, options);
+  }
+  EXPECT_EQ(allocation_count - before, 0);
+}
+
+// One thread serves many sessions in turn.
+TEST(SolverAllocationTest, WarmFramesOfManySkeletonsInTurn) {
+  Random random(3);
+  std::vector<Stream> streams;
+  for (int i = 0; i < 8; ++i) {
+    streams.push_back(MakeStream(random, RandomSkeleton(random)));
+  }
+  streams.push_back(MakeStream(random, PandaArm()));
+  EXPECT_EQ(AllocationsOfWarmFrames(streams, {}), 0);
+}
+
+TEST(SolverAllocationTest, ForwardKinematicsAndJacobian) {
+  Random random(4);
+  const auto skeleton = RandomSkeleton(random);
+  const EffectorFrame effector =
+      *skeleton->FindEffector(skeleton->end_effectors()[0].id);
+  const Eigen::VectorXd pose = RandomPose(random, *skeleton);
+  WorldTransforms frames;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian;
+  ForwardKinematics(*skeleton, pose, frames);
+  ComputeJacobian(*skeleton, pose, frames, effector, jacobian);
+  const int before = allocation_count;
+  ForwardKinematics(*skeleton, pose, frames);
+  ComputeJacobian(*skeleton, pose, frames, effector, jacobian);
+  EXPECT_EQ(allocation_count - before, 0);
+}
+
+}  // namespace
+}  // namespace gelenk
