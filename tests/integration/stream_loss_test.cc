@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <set>
 #include <string>
@@ -17,12 +18,14 @@
 #include "tests/testing/example_bodies.h"
 #include "tests/testing/random.h"
 #include "tests/testing/server_process.h"
+#include "tests/testing/tcp_relay.h"
 
 namespace gelenk::client {
 namespace {
 
 using gelenk::testing::Random;
 using gelenk::testing::ServerProcess;
+using gelenk::testing::TcpRelay;
 
 // No wait of a test that passes comes near it.
 constexpr absl::Duration kPatience = absl::Seconds(30);
@@ -79,6 +82,16 @@ v1::TargetFrame PlainFrame(int number) {
   return frame;
 }
 
+// Plain ones, and in between some that only a continuation or a complete frame
+// makes good: with a goal left out, a weight, a new goal.
+v1::TargetFrame MixedFrame(int number) {
+  v1::TargetFrame frame = PlainFrame(number);
+  if (number % 4 == 1) frame.mutable_targets()->DeleteSubrange(1, 1);
+  if (number == 500) frame.mutable_targets(0)->set_weight(0.7);
+  if (number == 400) *frame.mutable_goal_patch() = SwingFrame(100).goal_patch();
+  return frame;
+}
+
 using MakeFrame = v1::TargetFrame (*)(int number);
 // Called in the receiving thread, after the n-th answer.
 using Disturb = std::function<void(int answer_count)>;
@@ -89,9 +102,12 @@ class StreamLossTest : public ::testing::Test {
  protected:
   void SetUp() override { ASSERT_EQ(server_.Start(), absl::OkStatus()); }
 
-  std::unique_ptr<SessionStream> Open(v1::FramePolicy policy) {
-    auto stream = SessionStream::Open(
-        std::make_shared<Connection>(server_.target()), {}, {BodySpec(policy)});
+  std::unique_ptr<SessionStream> Open(
+      v1::FramePolicy policy, std::string target = "",
+      const SessionStreamOptions& options = {}) {
+    if (target.empty()) target = server_.target();
+    auto stream = SessionStream::Open(std::make_shared<Connection>(target),
+                                      options, {BodySpec(policy)});
     EXPECT_TRUE(stream.ok()) << stream.status();
     return stream.ok() ? *std::move(stream) : nullptr;
   }
@@ -205,6 +221,50 @@ TEST_F(StreamLossTest, DrainedServerHandsOver) {
   operator_thread.join();
   EXPECT_EQ(exit_code, 0);
 }
+
+// The session lives on, ahead of its client.
+class BrokenNetworkTest : public StreamLossTest,
+                          public ::testing::WithParamInterface<MakeFrame> {};
+
+TEST_P(BrokenNetworkTest, CutShowsInNoAngle) {
+  const std::vector<Positions> undisturbed = Undisturbed(GetParam());
+  TcpRelay relay(server_.port());
+  const auto stream = Open(v1::FRAME_POLICY_EVERY_FRAME, relay.target());
+  const auto cut = [&relay](int answer_count) {
+    if (answer_count % 31 != 8) return;
+    // Time for the server to get a window ahead.
+    relay.Deafen();
+    absl::SleepFor(absl::Milliseconds(5));
+    relay.Cut();
+  };
+  ExpectSame(Play(*stream, GetParam(), cut), undisturbed);
+  EXPECT_GE(stream->statistics().reconnects, 5);
+}
+
+TEST_P(BrokenNetworkTest, SilenceShowsInNoAngle) {
+  const std::vector<Positions> undisturbed = Undisturbed(GetParam());
+  TcpRelay relay(server_.port());
+  SessionStreamOptions options;
+  options.silence_timeout = absl::Milliseconds(300);
+  const auto stream =
+      Open(v1::FRAME_POLICY_EVERY_FRAME, relay.target(), options);
+  std::thread mender;
+  const auto freeze = [&](int answer_count) {
+    if (answer_count != kFrames / 2) return;
+    relay.Freeze();
+    // Until the old connection is reset, the server sees a driver in it.
+    mender = std::thread([&relay] {
+      absl::SleepFor(absl::Seconds(1));
+      relay.Cut();
+    });
+  };
+  ExpectSame(Play(*stream, GetParam(), freeze), undisturbed);
+  mender.join();
+  EXPECT_GE(stream->statistics().reconnects, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Frames, BrokenNetworkTest,
+                         ::testing::Values(SwingFrame, PlainFrame, MixedFrame));
 
 TEST_F(StreamLossTest, LatestWinsReachesTheNewestTargets) {
   const auto stream = Open(v1::FRAME_POLICY_LATEST_WINS);

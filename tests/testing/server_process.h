@@ -29,6 +29,7 @@ class ServerProcess {
 
   // 127.0.0.1:<port>
   std::string target() const;
+  int port() const { return port_; }
   bool is_running() const { return pid_ > 0; }
 
   // SIGKILL, and waits for the end.
