@@ -1,0 +1,35 @@
+#include "client/cli/command.h"
+
+#include "client/cli/text/number_list.h"
+
+namespace gelenk::cli {
+
+void AddFormatOption(CLI::App& app, Format* format) {
+  AddChoice<Format>(app, "--format", format,
+                    {{"json", Format::kJson}, {"table", Format::kTable}},
+                    "How to print; default: table");
+}
+
+CLI::Validator Positive() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const absl::StatusOr<double> number = ParseNumber(text);
+        if (number.ok() && *number > 0) return std::string();
+        return absl::StrCat("want a number above 0, got \"", text, "\"");
+      },
+      "");
+}
+
+void AddSkeletonFileOptions(CLI::App& app, SkeletonFileOptions* options) {
+  app.add_option("FILE", options->path,
+                 "A motion capture file (.bvh), or a skeleton (.json)")
+      ->required()
+      ->option_text("");
+  app.add_option("--unit", options->unit_m,
+                 "Metres per unit of a BVH file; default: guessed from the "
+                 "body's height")
+      ->check(Positive())
+      ->option_text("M");
+}
+
+}  // namespace gelenk::cli

@@ -1,0 +1,160 @@
+// gelenk ik: goals in, one pose out.
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "client/cli/command.h"
+#include "client/cli/goal_argument.h"
+#include "client/cli/ik_result_text.h"
+#include "client/cli/service.h"
+#include "client/cli/skeleton_file.h"
+#include "client/cli/text/number_list.h"
+#include "client/cli/tolerance.h"
+#include "client/cli/uploaded_skeleton.h"
+#include "convert/goal.h"
+
+namespace gelenk::cli {
+namespace {
+
+constexpr char kRest[] = "rest";
+
+struct IkOptions {
+  SkeletonFileOptions file;
+  Format format = Format::kTable;
+  std::vector<std::string> position_goals;
+  std::vector<std::string> rotation_goals;
+  std::vector<std::string> pose_goals;
+  std::string start = kRest;
+  std::string tolerance;
+  bool diagnose = false;
+};
+
+using GoalParser = absl::StatusOr<GoalKind> (*)(absl::string_view);
+
+absl::Status AddGoals(const std::vector<std::string>& arguments,
+                      GoalParser parse, std::vector<GoalKind>& kinds) {
+  for (const std::string& argument : arguments) {
+    absl::StatusOr<GoalKind> kind = parse(argument);
+    if (!kind.ok()) return kind.status();
+    kinds.push_back(*std::move(kind));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::vector<Goal>> GoalsOf(const IkOptions& options) {
+  std::vector<GoalKind> kinds;
+  absl::Status status;
+  status.Update(AddGoals(options.position_goals, ParsePositionGoal, kinds));
+  status.Update(AddGoals(options.rotation_goals, ParseRotationGoal, kinds));
+  status.Update(AddGoals(options.pose_goals, ParsePoseGoal, kinds));
+  if (!status.ok()) return status;
+  return NameGoals(std::move(kinds));
+}
+
+// All but the skeleton's name.
+absl::StatusOr<v1::SolveInverseKinematicsRequest> RequestFor(
+    const IkOptions& options) {
+  const absl::StatusOr<std::vector<Goal>> goals = GoalsOf(options);
+  if (!goals.ok()) return goals.status();
+  v1::SolveInverseKinematicsRequest request;
+  convert::ToProto(*goals, request.mutable_goals());
+  // The rest pose is what is meant by no start: the solve is then a cold one.
+  if (options.start != kRest) {
+    const auto numbers = ParseNumbers(options.start);
+    if (!numbers.ok()) return numbers.status();
+    request.mutable_start_pose()->mutable_positions()->Assign(numbers->begin(),
+                                                              numbers->end());
+  }
+  v1::SolverOptions& solver = *request.mutable_solver_options();
+  solver.set_diagnose(options.diagnose);
+  if (!options.tolerance.empty()) {
+    const auto tolerance = ParseTolerance(options.tolerance, Tolerance());
+    if (!tolerance.ok()) return tolerance.status();
+    SetTolerance(*tolerance, &solver);
+  }
+  return request;
+}
+
+absl::Status RunIk(const IkOptions& options, const GlobalOptions& globals,
+                   std::string* output) {
+  const absl::StatusOr<SkeletonFile> file =
+      ReadSkeletonFile(options.file.path, options.file.unit_m);
+  if (!file.ok()) return file.status();
+  auto request = RequestFor(options);
+  if (!request.ok()) return request.status();
+  const auto service = Service::Open(globals.server);
+  if (!service.ok()) return service.status();
+  const auto skeleton =
+      UploadedSkeleton::Create((*service)->connection(), file->message);
+  if (!skeleton.ok()) return skeleton.status();
+
+  request->set_skeleton((*skeleton)->name());
+  const auto response = (*service)->connection()->Call(
+      &v1::KinematicsService::Stub::SolveInverseKinematics, *request);
+  if (!response.ok()) return response.status();
+  *output += options.format == Format::kJson
+                 ? JsonText(IkResultJson(*file->skeleton, *request, *response))
+                 : IkResultText(*file->skeleton, *request, *response);
+  return absl::OkStatus();
+}
+
+void AddGoalOption(CLI::App& ik, const std::string& name,
+                   const std::string& form, const std::string& description,
+                   GoalParser parse, std::vector<std::string>* goals) {
+  ik.add_option(name, *goals, description)
+      ->check(Parses(parse))
+      ->allow_extra_args(false)
+      ->option_text(form);
+}
+
+}  // namespace
+
+Command AddIkCommand(CLI::App& app) {
+  auto options = std::make_shared<IkOptions>();
+  CLI::App* ik =
+      app.add_subcommand("ik", "Inverse kinematics: a pose that reaches goals");
+  AddSkeletonFileOptions(*ik, &options->file);
+  AddGoalOption(*ik, "--goal", "ID=x,y,z",
+                "Bring an end effector or joint to a point, m; repeatable",
+                ParsePositionGoal, &options->position_goals);
+  AddGoalOption(*ik, "--rotation-goal", "ID=qx,qy,qz,qw",
+                "Turn it to an orientation; repeatable", ParseRotationGoal,
+                &options->rotation_goals);
+  AddGoalOption(*ik, "--pose-goal", "ID=x,y,z,qx,qy,qz,qw",
+                "Both at once; repeatable", ParsePoseGoal,
+                &options->pose_goals);
+  ik->add_option("--start", options->start,
+                 "Pose to start from; default: the rest pose, with restarts "
+                 "from others where that leads nowhere")
+      ->check(Parses(
+          [](const std::string& text) -> absl::StatusOr<std::vector<double>> {
+            if (text == kRest) return std::vector<double>();
+            return ParseNumbers(text);
+          }))
+      ->option_text("Q0,Q1,...|rest");
+  ik->add_option("--tolerance", options->tolerance,
+                 "Errors that count as reached; default 1e-4 m, 1e-3 rad")
+      ->check(Parses([](const std::string& text) {
+        return ParseTolerance(text, Tolerance());
+      }))
+      ->option_text("M[,RAD]");
+  ik->add_flag("--diagnose", options->diagnose,
+               "Also print rank and manipulability");
+  AddFormatOption(*ik, &options->format);
+  ik->parse_complete_callback([options] {
+    if (options->position_goals.empty() && options->rotation_goals.empty() &&
+        options->pose_goals.empty()) {
+      throw CLI::RequiredError("a --goal, --rotation-goal or --pose-goal");
+    }
+  });
+  ik->footer(
+      "Examples:\n"
+      "  gelenk ik walk.bvh --goal LeftHand=0.4,1.2,0.3 --goal "
+      "RightFoot=-0.1,0,0\n"
+      "  gelenk ik arm.json --pose-goal tool=0.5,0.2,0.1,0,0,0,1 --diagnose");
+  return {ik, [options](const GlobalOptions& globals, std::string* output) {
+            return RunIk(*options, globals, output);
+          }};
+}
+
+}  // namespace gelenk::cli

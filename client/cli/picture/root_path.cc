@@ -1,0 +1,98 @@
+#include "client/cli/picture/root_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/picture/camera.h"
+#include "gelenk/kinematics/forward_kinematics.h"
+
+namespace gelenk::cli {
+namespace {
+
+constexpr double kMargin = 26;
+// More points than this cannot be told apart.
+constexpr int kMostPoints = 400;
+// A body that stands still still has a map of this size.
+constexpr double kSmallestMapM = 0.5;
+
+// m on the map, right and down.
+std::vector<Point> PathOf(const Playback& playback,
+                          const Eigen::MatrixXd& poses) {
+  const Camera map = MapCamera(playback.skeleton->up());
+  const int hips = std::max(playback.body.hips, 0);
+  const int frames = static_cast<int>(poses.cols());
+  const int count = std::min(frames, kMostPoints);
+  WorldTransforms world_from_joints;
+  std::vector<Point> path;
+  for (int i = 0; i < count; ++i) {
+    const int frame =
+        count == 1 ? 0
+                   : static_cast<int>(int64_t{frames - 1} * i / (count - 1));
+    ForwardKinematics(*playback.skeleton, poses.col(frame), world_from_joints);
+    path.push_back(map.Project(world_from_joints[hips].translation));
+  }
+  return path;
+}
+
+// 1, 2 or 5 times a power of ten, at most `length`.
+double RoundLength(double length) {
+  const double decade = std::pow(10.0, std::floor(std::log10(length)));
+  for (double factor : {5.0, 2.0}) {
+    if (factor * decade <= length) return factor * decade;
+  }
+  return decade;
+}
+
+std::string LengthLabel(double length_m) {
+  return length_m < 1 ? absl::StrCat(length_m * 100, " cm")
+                      : absl::StrCat(length_m, " m");
+}
+
+void DrawScaleBar(double pixels_per_m, const Box& box, Svg& svg) {
+  const double length_m = RoundLength(box.width / 3 / pixels_per_m);
+  const double y = box.bottom() - 14;
+  const double right = box.right() - 14;
+  const double left = right - length_m * pixels_per_m;
+  svg.Line({left, y}, {right, y}, "ground");
+  svg.Line({left, y - 4}, {left, y + 4}, "ground");
+  svg.Line({right, y - 4}, {right, y + 4}, "ground");
+  svg.Text({(left + right) / 2, y - 7}, LengthLabel(length_m), "middle");
+}
+
+}  // namespace
+
+void DrawRootPath(const Playback& playback, const Box& box, Svg& svg) {
+  svg.OpenGroup("root-path");
+  svg.Text({box.left, box.top - 10}, "path of the hips, from above", "heading");
+  svg.Rectangle(box, 6, "panel");
+  std::vector<Point> clip = PathOf(playback, playback.clip_poses);
+  std::vector<Point> answers = PathOf(playback, playback.answered_poses);
+
+  Point low = clip.front();
+  Point high = clip.front();
+  for (const auto* path : {&clip, &answers}) {
+    for (const Point& point : *path) {
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
+  }
+  const Point size = (high - low).cwiseMax(kSmallestMapM);
+  const double scale = std::min((box.width - 2 * kMargin) / size.x(),
+                                (box.height - 2 * kMargin) / size.y());
+  const Point middle = (low + high) / 2;
+  for (auto* path : {&clip, &answers}) {
+    for (Point& point : *path) {
+      point = box.center() + scale * (point - middle);
+    }
+  }
+  svg.Polyline(clip, "path-target");
+  svg.Polyline(answers, "path");
+  svg.Circle(answers.front(), 4.5, "path-start");
+  svg.Circle(answers.back(), 4.5, "path-end");
+  DrawScaleBar(scale, box, svg);
+  svg.CloseGroup();
+}
+
+}  // namespace gelenk::cli

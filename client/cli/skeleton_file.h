@@ -1,0 +1,35 @@
+// The one door for files that hold a skeleton.
+#ifndef CLIENT_CLI_SKELETON_FILE_H_
+#define CLIENT_CLI_SKELETON_FILE_H_
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "client/cli/bvh_clip.h"
+#include "gelenk/skeleton/skeleton.h"
+#include "gelenk/v1/skeleton.pb.h"
+
+namespace gelenk::cli {
+
+struct SkeletonFile {
+  std::string path;
+  std::shared_ptr<const Skeleton> skeleton;
+  // The same as a message, with display name and warnings.
+  v1::Skeleton message;
+  // Of a BVH file.
+  std::optional<BvhClip> clip;
+};
+
+// Reads `.bvh`, or `.json`: proto3 JSON of gelenk.v1.Skeleton. `unit_m` is for
+// BVH. Errors name the file and the place in it.
+absl::StatusOr<SkeletonFile> ReadSkeletonFile(const std::string& path,
+                                              std::optional<double> unit_m);
+
+// The file's name without folders.
+std::string BaseName(const std::string& path);
+
+}  // namespace gelenk::cli
+
+#endif  // CLIENT_CLI_SKELETON_FILE_H_
