@@ -146,7 +146,7 @@ absl::Status SolveInverseKinematics(
   absl::StatusOr<std::vector<Goal>> goals = convert::FromProto(request.goals());
   violations.AddStatus("", goals.status());
   absl::StatusOr<IkProblem> problem =
-      goals.ok() ? stored->trees->CreateProblem(*std::move(goals))
+      goals.ok() ? stored->trees->CreateProblem(std::move(*goals))
                  : goals.status();
   if (goals.ok()) violations.AddStatus("", problem.status());
   absl::StatusOr<SolverOptions> options =

@@ -15,7 +15,7 @@ namespace gelenk::server {
 
 struct ServiceState {
   ServiceState(const ServerOptions& server_options,
-               std::function<uint64_t()> random)
+               const std::function<uint64_t()>& random)
       : options(server_options),
         skeletons({server_options.limits.max_skeletons,
                    server_options.limits.max_skeleton_bytes},

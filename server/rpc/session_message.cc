@@ -21,7 +21,7 @@ constexpr char kEtagPrefix[] = "r";
 
 absl::Status SetGoals(const v1::Session& proto, SessionState& state) {
   absl::StatusOr<std::vector<Goal>> goals = convert::FromProto(proto.goals());
-  if (goals.ok()) state.goals = *std::move(goals);
+  if (goals.ok()) state.goals = std::move(*goals);
   return goals.status();
 }
 

@@ -132,7 +132,7 @@ absl::Status UpdateSession(const ServiceState& state,
   absl::StatusOr<std::optional<int64_t>> revision =
       RevisionOf(request.session().etag());
   if (!revision.ok()) return revision.status();
-  const absl::Status status = (*session)->Update(
+  absl::Status status = (*session)->Update(
       [&](SessionState& parts) {
         return UpdateState(request, (*session)->skeleton(),
                            state.options.limits, parts);

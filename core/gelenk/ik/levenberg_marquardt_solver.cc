@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 
 #include "gelenk/ik/kernel/rotation_bounds.h"
 #include "gelenk/ik/solve_diagnosis.h"
@@ -130,10 +131,11 @@ void LevenbergMarquardtSolver::Reserve(const IkProblem& problem,
   const size_t wanted = count.used() + kernel::kRowAlignment;
   if (memory_.size() < wanted) memory_.resize(wanted);
   // Whole cache lines: rows of J and H start on vector boundaries.
-  const uintptr_t line = sizeof(double) * kernel::kRowAlignment;
-  const uintptr_t first = reinterpret_cast<uintptr_t>(memory_.data());
-  const uintptr_t aligned = (first + line - 1) / line * line;
-  Carver carver(reinterpret_cast<double*>(aligned));
+  void* aligned = memory_.data();
+  size_t space = memory_.size() * sizeof(double);
+  std::align(kernel::kRowAlignment * sizeof(double),
+             count.used() * sizeof(double), aligned, space);
+  Carver carver(static_cast<double*>(aligned));
   workspace_ = Carve(tree, carver);
   // The padding of J's rows is read, never written.
   std::fill(workspace_.jacobian,

@@ -104,8 +104,10 @@ BvhDocument RandomDocument(std::mt19937& random) {
 
 bool SameBits(const Eigen::Ref<const Eigen::MatrixXd>& a,
               const Eigen::Ref<const Eigen::MatrixXd>& b) {
+  // memcmp may not be given the null pointers of empty matrices.
   return a.rows() == b.rows() && a.cols() == b.cols() &&
-         std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+         (a.size() == 0 ||
+          std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 
 TEST(BvhWriterTest, RandomDocumentsComeBackBitByBit) {
