@@ -3,9 +3,12 @@
 //
 // Both servers are measured in turn, several pairs, by the CPU time of their
 // processes: wall-clock throughput would measure this loader, which shares the
-// cores. Closed loop: each stream sends its next message when it has read the
-// answer. The solve is subtracted by its own report, without the slowest
-// percent, which were interrupted.
+// cores. Paced: each stream sends 60 messages a second, as a game does, so that
+// both servers see the same arrivals. Closed loop: each stream sends its next
+// message when it has read the answer. The solve is subtracted by its own
+// report, without the slowest percent, which were interrupted.
+//
+//   stream_benchmark [FIRST LAST]     only these lines of the table, from 0
 #include <grpcpp/grpcpp.h>
 #include <unistd.h>
 
@@ -38,6 +41,7 @@ constexpr int kStreams = 100;
 constexpr int kConnections = 10;
 constexpr int kPairs = 5;
 constexpr double kSeconds = 1.5;
+constexpr double kPacedHz = 60;
 
 using Clock = std::chrono::steady_clock;
 
@@ -59,7 +63,11 @@ double MeanWithoutSlowest(std::vector<double> values) {
 class LoopStream {
  public:
   virtual ~LoopStream() = default;
+  // An operation has ended.
   virtual void Run(bool ok) = 0;
+  // Paced: time to send.
+  virtual void Send() = 0;
+  virtual void Cancel() = 0;
 };
 
 // `Traits` says how messages are made and read.
@@ -70,9 +78,10 @@ class TypedLoopStream final : public LoopStream {
   using Prepare =
       std::function<std::unique_ptr<ReaderWriter>(grpc::ClientContext*)>;
 
-  TypedLoopStream(const Prepare& prepare, std::function<void(Request&)> next,
+  TypedLoopStream(const Prepare& prepare, bool paced,
+                  std::function<void(Request&)> next,
                   std::function<void(const Response&)> take)
-      : next_(std::move(next)), take_(std::move(take)) {
+      : paced_(paced), next_(std::move(next)), take_(std::move(take)) {
     stream_ = prepare(&context_);
     stream_->StartCall(this);
   }
@@ -88,18 +97,29 @@ class TypedLoopStream final : public LoopStream {
       return;
     }
     reading_ = false;
+    idle_ = true;
+    if (!paced_) Send();
+  }
+
+  void Send() override {
+    if (!idle_) return;
+    idle_ = false;
     writing_ = true;
     next_(request_);
     stream_->Write(request_, this);
   }
+
+  void Cancel() override { context_.TryCancel(); }
 
  private:
   grpc::ClientContext context_;
   std::unique_ptr<ReaderWriter> stream_;
   Request request_;
   Response response_;
+  const bool paced_;
   const std::function<void(Request&)> next_;
   const std::function<void(const Response&)> take_;
+  bool idle_ = false;
   bool reading_ = false;
   bool writing_ = false;
 };
@@ -120,14 +140,38 @@ struct Load {
     }
   }
 
-  void RunFor(double seconds) {
-    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  // Without a rate, as fast as the answers come.
+  void RunFor(double seconds, double hz) {
+    const auto begin = Clock::now();
+    const auto end = begin + std::chrono::duration<double>(seconds);
+    const auto interval =
+        std::chrono::duration<double>(hz > 0 ? 1 / hz / kStreams : seconds);
+    auto due = begin;
     void* tag;
     bool ok;
-    while (Clock::now() < end && queue.Next(&tag, &ok)) {
-      static_cast<LoopStream*>(tag)->Run(ok);
+    size_t next = 0;
+    while (Clock::now() < end) {
+      if (hz > 0 && Clock::now() >= due) {
+        streams[next]->Send();
+        next = (next + 1) % streams.size();
+        due += std::chrono::duration_cast<Clock::duration>(interval);
+      }
+      const auto wake =
+          std::chrono::system_clock::now() +
+          std::chrono::duration_cast<std::chrono::system_clock::duration>(
+              (hz > 0 ? due : end) - Clock::now());
+      if (queue.AsyncNext(&tag, &ok, wake) ==
+          grpc::CompletionQueue::GOT_EVENT) {
+        static_cast<LoopStream*>(tag)->Run(ok);
+      }
     }
   }
+};
+
+struct Setting {
+  int threads;
+  int batch;
+  bool paced;
 };
 
 struct Figures {
@@ -136,27 +180,32 @@ struct Figures {
   double frames_s = 0;
 };
 
-Figures Measure(const ChildProcess& server, Load& load, int batch) {
-  load.RunFor(0.5);
+Figures Measure(const ChildProcess& server, Load& load,
+                const Setting& setting) {
+  const double hz = setting.paced ? kPacedHz : 0;
+  load.RunFor(0.5, hz);
   load.messages = 0;
   load.counting = true;
   const double cpu = server.cpu_seconds();
   const auto begin = Clock::now();
-  load.RunFor(kSeconds);
+  load.RunFor(kSeconds, hz);
   const double seconds =
       std::chrono::duration<double>(Clock::now() - begin).count();
-  const double frames = static_cast<double>(load.messages) * batch;
+  const double frames = static_cast<double>(load.messages) * setting.batch;
   return {1e6 * (server.cpu_seconds() - cpu) / frames, 0, frames / seconds};
 }
 
-// The loader's calls are left to the end of the process: taking them down one
-// by one is no part of the figures.
-void Abandon(std::unique_ptr<Load> load) { load.release(); }
+// The loader's memory is left to the end of the process: taking its calls down
+// one by one is no part of the figures.
+void Abandon(std::unique_ptr<Load> load) {
+  for (const auto& stream : load->streams) stream->Cancel();
+  load.release();
+}
 
-Figures MeasureEcho(int threads, size_t request_bytes, size_t answer_bytes,
-                    int batch) {
-  ChildProcess server(
-      {BARE_ECHO, std::to_string(threads), std::to_string(answer_bytes)});
+Figures MeasureEcho(const Setting& setting, size_t request_bytes,
+                    size_t answer_bytes) {
+  ChildProcess server({BARE_ECHO, std::to_string(setting.threads),
+                       std::to_string(answer_bytes)});
   auto load = std::make_unique<Load>(server.ReadLine());
   const std::string payload(request_bytes, 'x');
   for (int i = 0; i < kStreams; ++i) {
@@ -166,10 +215,11 @@ Figures MeasureEcho(int threads, size_t request_bytes, size_t answer_bytes,
         [stub, &load](grpc::ClientContext* context) {
           return stub->PrepareAsyncStream(context, &load->queue);
         },
+        setting.paced,
         [&payload](Payload& request) { request.set_bytes(payload); },
         [l = load.get()](const Payload&) { l->messages += l->counting; }));
   }
-  const Figures figures = Measure(server, *load, batch);
+  const Figures figures = Measure(server, *load, setting);
   Abandon(std::move(load));
   return figures;
 }
@@ -241,14 +291,14 @@ void CreateSessions(const StreamProblem& problem, Load& load) {
   }
 }
 
-Figures MeasureServer(int threads, const StreamProblem& problem, int batch,
+Figures MeasureServer(const Setting& setting, const StreamProblem& problem,
                       size_t* request_bytes, size_t* answer_bytes) {
   const std::string port_file =
       "/tmp/gelenk-benchmark-" + std::to_string(getpid());
   std::remove(port_file.c_str());
   ChildProcess server({GELENKD, "--listen=127.0.0.1:0",
                        "--port-file=" + port_file, "--log-level=error",
-                       "--io-threads=" + std::to_string(threads)});
+                       "--io-threads=" + std::to_string(setting.threads)});
   std::string port;
   while (!(std::ifstream(port_file) >> port)) usleep(10000);
   std::remove(port_file.c_str());
@@ -258,7 +308,7 @@ Figures MeasureServer(int threads, const StreamProblem& problem, int batch,
   for (int i = 0; i < kStreams; ++i) {
     std::shared_ptr<v1::SessionService::Stub> stub =
         v1::SessionService::NewStub(load->channels[i % kConnections]);
-    auto source = std::make_shared<FrameSource>(problem, batch, 5 * i);
+    auto source = std::make_shared<FrameSource>(problem, setting.batch, 5 * i);
     bool attached = false;
     load->streams.push_back(
         std::make_unique<TypedLoopStream<v1::StreamingSolveRequest,
@@ -266,6 +316,7 @@ Figures MeasureServer(int threads, const StreamProblem& problem, int batch,
             [stub, &load](grpc::ClientContext* context) {
               return stub->PrepareAsyncStreamingSolve(context, &load->queue);
             },
+            setting.paced,
             [source, i, attached,
              request_bytes](v1::StreamingSolveRequest& request) mutable {
               if (!attached) {
@@ -291,14 +342,14 @@ Figures MeasureServer(int threads, const StreamProblem& problem, int batch,
               }
             }));
   }
-  Figures figures = Measure(server, *load, batch);
+  Figures figures = Measure(server, *load, setting);
   figures.solve_us = MeanWithoutSlowest(solves);
   Abandon(std::move(load));
   return figures;
 }
 
-void Compare(const char* name, const StreamProblem& problem, int batch,
-             int threads) {
+void Compare(const char* name, const StreamProblem& problem,
+             const Setting& setting) {
   std::vector<double> ratios;
   std::vector<double> ours;
   std::vector<double> bare;
@@ -307,34 +358,39 @@ void Compare(const char* name, const StreamProblem& problem, int batch,
   size_t answer_bytes = 0;
   for (int pair = 0; pair < kPairs; ++pair) {
     const Figures server =
-        MeasureServer(threads, problem, batch, &request_bytes, &answer_bytes);
-    const Figures echo =
-        MeasureEcho(threads, request_bytes, answer_bytes, batch);
+        MeasureServer(setting, problem, &request_bytes, &answer_bytes);
+    const Figures echo = MeasureEcho(setting, request_bytes, answer_bytes);
     ours.push_back(server.cpu_us - server.solve_us);
     bare.push_back(echo.cpu_us);
     solve.push_back(server.solve_us);
     ratios.push_back(ours.back() / bare.back());
   }
-  std::printf("%-22s %5d %7d %6zu %6zu %9.2f %9.2f %9.2f %7.2f\n", name, batch,
-              threads, request_bytes, answer_bytes, Median(solve), Median(ours),
-              Median(bare), Median(ratios));
+  std::printf("%-16s %-6s %5d %7d %6zu %6zu %8.2f %8.2f %9.2f %6.2f\n", name,
+              setting.paced ? "60 Hz" : "closed", setting.batch,
+              setting.threads, request_bytes, answer_bytes, Median(solve),
+              Median(ours), Median(bare), Median(ratios));
   std::fflush(stdout);
 }
 
-int Main() {
+int Main(int first, int last) {
   std::printf(
       "%d streams on %d connections; CPU of the server, us a frame, medians "
       "of %d pairs\n",
       kStreams, kConnections, kPairs);
-  std::printf("%-22s %5s %7s %6s %6s %9s %9s %9s %7s\n", "session", "batch",
-              "threads", "in B", "out B", "solve", "the rest", "bare echo",
-              "ratio");
+  std::printf("%-16s %-6s %5s %7s %6s %6s %8s %8s %9s %6s\n", "session", "load",
+              "batch", "threads", "in B", "out B", "solve", "the rest",
+              "bare echo", "ratio");
   const StreamProblem body = BodyProblem(600);
   const StreamProblem arm = PandaProblem(600);
-  for (int threads : {1, 2}) {
-    for (int batch : {1, 10}) {
-      Compare("body, 31 joints", body, batch, threads);
-      Compare("arm, 7 joints", arm, batch, threads);
+  int line = 0;
+  for (const Setting& setting :
+       {Setting{1, 1, true}, Setting{1, 1, false}, Setting{1, 10, false},
+        Setting{2, 1, true}, Setting{2, 1, false}}) {
+    for (const auto& [name, problem] :
+         {std::make_pair("body, 31 joints", &body),
+          std::make_pair("arm, 7 joints", &arm)}) {
+      if (line >= first && line <= last) Compare(name, *problem, setting);
+      ++line;
     }
   }
   return 0;
@@ -343,8 +399,10 @@ int Main() {
 }  // namespace
 }  // namespace gelenk::benchmarks
 
-int main() {
-  const int code = gelenk::benchmarks::Main();
+int main(int argc, char** argv) {
+  const bool some = argc == 3;
+  const int code = gelenk::benchmarks::Main(some ? std::atoi(argv[1]) : 0,
+                                            some ? std::atoi(argv[2]) : 99);
   std::fflush(stdout);
   // Abandoned calls may still be under way.
   std::_Exit(code);
