@@ -31,7 +31,10 @@ class RequestLog {
            absl::string_view name) {
     if (request_id.empty()) return;
     const ResourceKey key(tenant, request_id);
-    if (names_.emplace(key, name).second) order_.push_back(key);
+    // A request whose resource is gone may have made another one.
+    if (names_.insert_or_assign(key, std::string(name)).second) {
+      order_.push_back(key);
+    }
     if (order_.size() <= kCapacity) return;
     names_.erase(order_.front());
     order_.pop_front();
