@@ -227,41 +227,40 @@ int64_t Session::sequence_number() const {
 
 SessionSnapshot Session::Snapshot() const {
   absl::MutexLock lock(&mutex_);
-  SessionSnapshot snapshot;
-  snapshot.state.goals.assign(problem_.goals().begin(), problem_.goals().end());
-  snapshot.state.options = options_;
-  snapshot.state.positions = positions_;
-  snapshot.state.cold = cold_;
-  snapshot.state.world_from_skeleton = problem_.world_from_skeleton();
-  snapshot.state.idle_ttl = idle_ttl_;
-  snapshot.expire_time = last_driven_ + idle_ttl_;
-  snapshot.revision = revision_;
-  return snapshot;
+  return {StateLocked(), last_driven_ + idle_ttl_, revision_};
+}
+
+SessionState Session::StateLocked() const {
+  SessionState state;
+  state.goals.assign(problem_.goals().begin(), problem_.goals().end());
+  state.options = options_;
+  state.positions = positions_;
+  state.cold = cold_;
+  state.world_from_skeleton = problem_.world_from_skeleton();
+  state.idle_ttl = idle_ttl_;
+  return state;
 }
 
 absl::Status Session::Update(
     const std::function<absl::Status(SessionState&)>& change,
     std::optional<int64_t> revision, absl::Time now) {
-  SessionSnapshot before = Snapshot();
-  if (revision && *revision != before.revision) {
+  // Held all along, so that no solve in between is lost; nobody waits, for
+  // nobody drives.
+  absl::MutexLock lock(&mutex_);
+  if (absl::Status status = CheckDriverLocked(kUnaryDriver); !status.ok()) {
+    return status;
+  }
+  if (revision && *revision != revision_) {
     return absl::AbortedError(
         absl::StrCat("etag: ", name_, " was changed meanwhile"));
   }
-  SessionState state = before.state;
+  SessionState state = StateLocked();
   if (absl::Status status = change(state); !status.ok()) return status;
   absl::StatusOr<IkProblem> problem =
       trees_->CreateProblem(std::move(state.goals));
   if (!problem.ok()) return problem.status();
   problem->SetWorldFromSkeleton(state.world_from_skeleton);
 
-  absl::MutexLock lock(&mutex_);
-  if (absl::Status status = CheckDriverLocked(kUnaryDriver); !status.ok()) {
-    return status;
-  }
-  if (revision_ != before.revision) {
-    return absl::AbortedError(
-        absl::StrCat("etag: ", name_, " was changed meanwhile"));
-  }
   problem_ = *std::move(problem);
   options_ = state.options;
   positions_ = std::move(state.positions);

@@ -108,7 +108,8 @@ class Session {
 
   SessionSnapshot Snapshot() const;
 
-  // Applies `change` to a copy of the state, checks it, and takes it.
+  // Applies `change` to a copy of the state, checks it, and takes it. `change`
+  // must not call the session.
   // ABORTED when `revision` is given and is not the present one,
   // FAILED_PRECONDITION while a stream drives.
   absl::Status Update(const std::function<absl::Status(SessionState&)>& change,
@@ -132,6 +133,7 @@ class Session {
  private:
   absl::Status CheckDriverLocked(DriverId driver) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  SessionState StateLocked() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const std::string name_;
   const std::string skeleton_name_;
