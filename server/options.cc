@@ -59,6 +59,7 @@ absl::Status CheckOptions(const ServerOptions& options) {
   CheckAtLeast("max_joints", limits.max_joints, 1, violations);
   CheckAtLeast("max_message_bytes", limits.max_message_bytes, 1024, violations);
   CheckAtLeast("max_import_bytes", limits.max_import_bytes, 1, violations);
+  CheckAtLeast("max_imports", limits.max_imports, 1, violations);
   CheckAtLeast("max_streams", limits.max_streams, 1, violations);
   CheckAtLeast("max_slots", limits.max_slots, 1, violations);
   CheckAtLeast("max_unsent_answers", limits.max_unsent_answers, 1, violations);
