@@ -10,7 +10,7 @@
 namespace gelenk::server {
 
 // The codes are the same numbers. Violations travel as google.rpc.BadRequest in
-// the error details.
+// the error details, as many as a status has room for.
 grpc::Status ToGrpc(const absl::Status& status);
 
 void ToProto(const absl::Status& status, v1::FrameStatus* proto);
