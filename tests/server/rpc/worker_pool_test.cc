@@ -1,0 +1,110 @@
+#include "server/rpc/worker_pool.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <set>
+#include <vector>
+
+#include "absl/synchronization/mutex.h"
+#include "absl/synchronization/notification.h"
+
+namespace gelenk::server {
+namespace {
+
+using ::testing::ElementsAre;
+
+WorkerPool::Work Doing(std::function<void()> work) {
+  return [work = std::move(work)](LevenbergMarquardtSolver&) { work(); };
+}
+
+TEST(WorkerPoolTest, RunsWhatWaitsInOrderBeforeItGoes) {
+  std::vector<int> done;
+  {
+    WorkerPool pool(1, 100, InstructionSet::kBaseline);
+    for (int i = 0; i < 5; ++i) {
+      ASSERT_TRUE(pool.Submit(Doing([&done, i] { done.push_back(i); })));
+    }
+  }
+  EXPECT_THAT(done, ElementsAre(0, 1, 2, 3, 4));
+}
+
+TEST(WorkerPoolTest, RefusesMoreThanMayWait) {
+  absl::Notification started;
+  absl::Notification go_on;
+  std::atomic<int> done = 0;
+  {
+    WorkerPool pool(1, 2, InstructionSet::kBaseline);
+    ASSERT_TRUE(pool.Submit(Doing([&] {
+      started.Notify();
+      go_on.WaitForNotification();
+      ++done;
+    })));
+    started.WaitForNotification();  // it waits no longer, it runs
+    EXPECT_TRUE(pool.Submit(Doing([&] { ++done; })));
+    EXPECT_TRUE(pool.Submit(Doing([&] { ++done; })));
+    EXPECT_FALSE(pool.Submit(Doing([&] { done = 1000; })));
+    go_on.Notify();
+  }
+  EXPECT_EQ(done, 3);
+}
+
+TEST(WorkerPoolTest, GivesEachThreadItsSolver) {
+  constexpr int kThreads = 3;
+  absl::Mutex mutex;
+  std::set<LevenbergMarquardtSolver*> solvers;
+  {
+    WorkerPool pool(kThreads, 100, InstructionSet::kBaseline);
+    for (int i = 0; i < kThreads; ++i) {
+      ASSERT_TRUE(pool.Submit([&](LevenbergMarquardtSolver& solver) {
+        EXPECT_EQ(solver.instruction_set(), InstructionSet::kBaseline);
+        const auto all_here = [&solvers] { return solvers.size() == kThreads; };
+        absl::MutexLock lock(&mutex);
+        solvers.insert(&solver);
+        // Holds its thread until each one has had its turn.
+        mutex.Await(absl::Condition(&all_here));
+      }));
+    }
+  }
+  EXPECT_EQ(solvers.size(), kThreads);
+}
+
+TEST(WorkerPoolTest, WorkMaySubmitWork) {
+  std::atomic<int> done = 0;
+  absl::Notification both;
+  WorkerPool pool(1, 10, InstructionSet::kBaseline);
+  ASSERT_TRUE(pool.Submit(Doing([&] {
+    ++done;
+    EXPECT_TRUE(pool.Submit(Doing([&] {
+      ++done;
+      both.Notify();
+    })));
+  })));
+  both.WaitForNotification();
+  EXPECT_EQ(done, 2);
+}
+
+TEST(WorkerPoolTest, TakesWorkFromManyThreads) {
+  constexpr int kThreads = 4;
+  constexpr int kEach = 200;
+  std::atomic<int> done = 0;
+  std::atomic<int> refused = 0;
+  {
+    WorkerPool pool(2, 50, InstructionSet::kBaseline);
+    std::vector<std::thread> threads;
+    for (int t = 0; t < kThreads; ++t) {
+      threads.emplace_back([&] {
+        for (int i = 0; i < kEach; ++i) {
+          if (!pool.Submit(Doing([&done] { ++done; }))) ++refused;
+        }
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+  }
+  EXPECT_EQ(done + refused, kThreads * kEach);
+  EXPECT_GT(done, 0);
+}
+
+}  // namespace
+}  // namespace gelenk::server
