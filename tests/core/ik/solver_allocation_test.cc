@@ -45,22 +45,29 @@ void* __wrap_aligned_alloc(size_t alignment, size_t size) {
 }
 }
 
-void* operator new(size_t size) {
+// Out of line, or the compiler pairs new with free and warns.
+[[gnu::noinline]] void* operator new(size_t size) {
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void* operator new(size_t size, std::align_val_t alignment) {
+[[gnu::noinline]] void* operator new(size_t size, std::align_val_t alignment) {
   const size_t step = static_cast<size_t>(alignment);
   const size_t whole_steps = (size + step - 1) / step * step;
   if (void* memory = std::aligned_alloc(step, whole_steps)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, size_t, std::align_val_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory,
+                                       std::align_val_t) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, size_t,
+                                       std::align_val_t) noexcept {
   std::free(memory);
 }
 
