@@ -64,7 +64,17 @@ GoalTarget TargetOf(const GoalKind& kind) {
 }
 
 bool Fits(const GoalKind& kind, const GoalTarget& target) {
-  return TargetOf(kind).index() == target.index();
+  return std::visit(
+      Overloaded{[&](const PositionGoal&) {
+                   return std::holds_alternative<Eigen::Vector3d>(target);
+                 },
+                 [&](const RotationGoal&) {
+                   return std::holds_alternative<Eigen::Quaterniond>(target);
+                 },
+                 [&](const PoseGoal&) {
+                   return std::holds_alternative<RigidTransform>(target);
+                 }},
+      kind);
 }
 
 void Retarget(GoalKind& kind, const GoalTarget& target) {

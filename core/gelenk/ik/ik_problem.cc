@@ -86,7 +86,10 @@ IkProblem::IkProblem(std::shared_ptr<const Skeleton> skeleton,
       goals_(std::move(goals)),
       tree_(std::move(tree)),
       targets_(goals_.size()) {
-  for (size_t i = 0; i < goals_.size(); ++i) Refresh(static_cast<int>(i));
+  for (size_t i = 0; i < goals_.size(); ++i) {
+    RefreshTarget(static_cast<int>(i));
+    RefreshWeights(static_cast<int>(i));
+  }
 }
 
 absl::Status IkProblem::CheckTarget(int goal_index, GoalTarget& target) const {
@@ -110,7 +113,7 @@ absl::Status IkProblem::CheckTarget(int goal_index, GoalTarget& target) const {
 
 void IkProblem::SetTarget(int goal_index, const GoalTarget& target) {
   Retarget(goals_[goal_index].kind, target);
-  Refresh(goal_index);
+  RefreshTarget(goal_index);
 }
 
 absl::Status IkProblem::CheckWeight(double weight) {
@@ -123,13 +126,12 @@ absl::Status IkProblem::CheckWeight(double weight) {
 
 void IkProblem::SetWeight(int goal_index, double weight) {
   goals_[goal_index].weight = weight;
-  Refresh(goal_index);
+  RefreshWeights(goal_index);
 }
 
-void IkProblem::Refresh(int goal_index) {
+void IkProblem::RefreshTarget(int goal_index) {
   const Goal& goal = goals_[goal_index];
   kernel::TaskTarget& target = targets_[goal_index];
-  target.active = goal.weight > 0;
   if (const auto* position = std::get_if<PositionGoal>(&goal.kind)) {
     StoreTranslation(position->world_position, target);
   } else if (const auto* rotation = std::get_if<RotationGoal>(&goal.kind)) {
@@ -138,6 +140,12 @@ void IkProblem::Refresh(int goal_index) {
     StoreTranslation(pose->world_pose.translation, target);
     StoreRotation(pose->world_pose.rotation, target);
   }
+}
+
+void IkProblem::RefreshWeights(int goal_index) {
+  const Goal& goal = goals_[goal_index];
+  kernel::TaskTarget& target = targets_[goal_index];
+  target.active = goal.weight > 0;
   const AxisMask axes = AxesOf(goal.kind);
   const double counts[3] = {axes.x ? 1.0 : 0.0, axes.y ? 1.0 : 0.0,
                             axes.z ? 1.0 : 0.0};

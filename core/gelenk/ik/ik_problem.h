@@ -72,7 +72,9 @@ class IkProblem {
  private:
   IkProblem(std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
             std::shared_ptr<const SparseTree> tree);
-  void Refresh(int goal_index);
+  // Bring targets_ up to goals_.
+  void RefreshTarget(int goal_index);
+  void RefreshWeights(int goal_index);
 
   std::shared_ptr<const Skeleton> skeleton_;
   std::vector<Goal> goals_;
