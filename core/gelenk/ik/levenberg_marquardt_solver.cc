@@ -16,6 +16,9 @@ namespace {
 // A coordinate this near to its bound is on it.
 constexpr double kOnBound = 1e-9;
 
+// Iterations of the last attempt against those of the others.
+constexpr int kPolishFactor = 4;
+
 kernel::AttemptFunction AttemptFor(InstructionSet level) {
 #ifdef GELENK_X86_LEVELS
   if (level == InstructionSet::kAvx2) return kernel::avx2::Run;
@@ -219,9 +222,11 @@ kernel::Attempt LevenbergMarquardtSolver::Restart(const IkProblem& problem,
     }
   }
   if (attempt.end != kernel::AttemptEnd::kConverged) {
-    // Nothing reached: finish the best attempt with patience.
+    // Nothing reached: finish the best attempt with patience, so that it says
+    // whether the target is out of reach.
     positions = View(best_);
     settings.impatient = false;
+    settings.max_iterations *= kPolishFactor;
     run();
   }
   return attempt;

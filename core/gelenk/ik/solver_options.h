@@ -24,7 +24,8 @@ enum class ReportDetail {
 };
 
 struct SolverOptions {
-  // Per attempt.
+  // Per attempt. When no restart converges the best pose gets one more attempt,
+  // with four times as many.
   int max_iterations = 50;
   // Attempts from other starts when one does not converge; unset means
   // kColdRestarts from a cold start and none from a warm one.
