@@ -14,7 +14,6 @@
 namespace gelenk {
 namespace {
 
-using ::gelenk::testing::EffectorPose;
 using ::gelenk::testing::PositionGoalFor;
 using ::gelenk::testing::RotationGoalFor;
 using ::testing::ElementsAre;

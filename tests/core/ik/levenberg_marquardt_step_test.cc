@@ -25,7 +25,6 @@ using ::gelenk::testing::RandomSkeletonBuilder;
 using ::gelenk::testing::SkeletonRecipe;
 using ::gelenk::testing::StartNear;
 using ::gelenk::testing::Uniform;
-using ::gelenk::testing::UniformIndex;
 using ::gelenk::testing::WithProbability;
 
 // Of the gradient: rounding of the factorisation, and of reading dq off

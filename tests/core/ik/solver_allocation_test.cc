@@ -21,6 +21,7 @@ std::atomic<int> allocation_count = 0;
 
 }  // namespace
 
+// NOLINTBEGIN(readability-identifier-naming): the linker's names.
 extern "C" {
 void* __real_malloc(size_t size);
 void* __real_calloc(size_t count, size_t size);
@@ -44,6 +45,7 @@ void* __wrap_aligned_alloc(size_t alignment, size_t size) {
   return __real_aligned_alloc(alignment, size);
 }
 }
+// NOLINTEND(readability-identifier-naming)
 
 // Out of line, or the compiler pairs new with free and warns.
 [[gnu::noinline]] void* operator new(size_t size) {
@@ -90,7 +92,8 @@ struct Stream {
   SolveReport report;
 };
 
-Stream MakeStream(Random& random, std::shared_ptr<const Skeleton> skeleton) {
+Stream MakeStream(Random& random,
+                  const std::shared_ptr<const Skeleton>& skeleton) {
   const Eigen::VectorXd start = RandomPoseWithinLimits(random, *skeleton);
   Stream stream = {
       IkProblem::Create(skeleton, PoseGoalsAt(*skeleton, start)).value(),

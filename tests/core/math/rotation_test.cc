@@ -15,7 +15,6 @@ using ::gelenk::testing::AxisAngleMatrix;
 using ::gelenk::testing::Random;
 using ::gelenk::testing::RandomDirection;
 using ::gelenk::testing::RandomRotation;
-using ::gelenk::testing::Uniform;
 
 // A few operations on numbers near 1.
 constexpr double kRounding = 1e-14;
