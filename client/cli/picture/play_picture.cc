@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "client/cli/picture/figure_row.h"
 #include "client/cli/picture/outcome_strip.h"
 #include "client/cli/picture/root_path.h"
@@ -72,16 +74,28 @@ void DrawKeyOfFigures(Svg& svg) {
   svg.Circle({target + 5, y - 4}, 1.8, "effector");
 }
 
+// What has an orientation to reach.
+std::string PosedEffectors(const Playback& playback) {
+  std::vector<absl::string_view> ids;
+  for (const Goal& goal : playback.goals) {
+    if (!std::holds_alternative<PositionGoal>(goal.kind)) {
+      ids.push_back(EffectorId(goal.kind));
+    }
+  }
+  return absl::StrJoin(ids, ", ");
+}
+
 void DrawCharts(const Playback& playback, const Residuals& residuals,
                 const Summary& summary, Svg& svg) {
   DrawTimeChart(
       {"distance of the worst effector from its target", "mm",
        Scaled(residuals.position_m, 1e3), 1e3 * playback.tolerance.position_m},
       kPositionChart, svg);
-  DrawTimeChart({"angle of the hips from their target", "mrad",
-                 Scaled(residuals.rotation_rad, 1e3),
-                 1e3 * playback.tolerance.rotation_rad},
-                kRotationChart, svg);
+  DrawTimeChart(
+      {absl::StrCat("angle of ", PosedEffectors(playback), " from the target"),
+       "mrad", Scaled(residuals.rotation_rad, 1e3),
+       1e3 * playback.tolerance.rotation_rad},
+      kRotationChart, svg);
   svg.Text({kStrip.left - 8, kStrip.bottom() - 4}, "outcome", "end");
   DrawOutcomeStrip(playback, kStrip, svg);
   DrawTimeAxis(summary.clip_duration_s, kStrip, svg);

@@ -65,7 +65,11 @@ void DrawScaleBar(double pixels_per_m, const Box& box, Svg& svg) {
 
 void DrawRootPath(const Playback& playback, const Box& box, Svg& svg) {
   svg.OpenGroup("root-path");
-  svg.Text({box.left, box.top - 10}, "path of the hips, from above", "heading");
+  const int hips = std::max(playback.body.hips, 0);
+  svg.Text({box.left, box.top - 10},
+           absl::StrCat("path of ", playback.skeleton->joint(hips).id,
+                        ", from above"),
+           "heading");
   svg.Rectangle(box, 6, "panel");
   std::vector<Point> clip = PathOf(playback, playback.clip_poses);
   std::vector<Point> answers = PathOf(playback, playback.answered_poses);

@@ -7,8 +7,9 @@
 
 namespace gelenk::cli {
 
-// The path of the hips: the clip's broad and pale, the answers' on top of it;
-// dots mark start and end, a bar tells the scale.
+// The path of the hips, or of the root where there are none: the clip's broad
+// and pale, the answers' on top of it; dots mark start and end, a bar tells the
+// scale.
 void DrawRootPath(const Playback& playback, const Box& box, Svg& svg);
 
 }  // namespace gelenk::cli

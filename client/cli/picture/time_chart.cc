@@ -31,12 +31,13 @@ LogScale ScaleFor(const TimeChart& chart, const Box& box) {
     smallest = std::min(smallest, value);
     largest = std::max(largest, value);
   }
-  const int floor = static_cast<int>(std::floor(std::log10(chart.tolerance))) -
-                    kMostDecadesBelow;
+  const int tolerance_decade =
+      static_cast<int>(std::floor(std::log10(chart.tolerance)));
   LogScale scale;
   scale.box = box;
   scale.bottom_decade =
-      std::max(floor, static_cast<int>(std::floor(std::log10(smallest))));
+      std::clamp(static_cast<int>(std::floor(std::log10(smallest))),
+                 tolerance_decade - kMostDecadesBelow, tolerance_decade - 1);
   // Room above the largest value, so that the tolerance does not lie on the
   // edge.
   scale.top_decade =
