@@ -1,0 +1,153 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "client/cli/file_bytes.h"
+#include "client/cli/info/inspection.h"
+#include "client/cli/skeleton_file.h"
+#include "convert/skeleton.h"
+#include "tests/testing/walking_bvh.h"
+
+namespace gelenk::cli {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class FilesTest : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+  std::string Write(const std::string& name, const std::string& text) {
+    EXPECT_TRUE(WriteFile(Path(name), text).ok());
+    return Path(name);
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) /
+      ::testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+TEST_F(FilesTest, BytesComeRound) {
+  const std::string bytes("a\0b\r\n", 5);
+  EXPECT_EQ(*ReadFile(Write("bytes", bytes)), bytes);
+}
+
+TEST_F(FilesTest, ErrorsNameTheFile) {
+  const absl::Status missing = ReadFile(Path("missing")).status();
+  EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(std::string(missing.message()), HasSubstr("missing"));
+  EXPECT_FALSE(ReadFile(folder_.string()).ok());
+  EXPECT_FALSE(WriteFile(Path("no/such/folder"), "").ok());
+}
+
+TEST_F(FilesTest, ReadsABvhWithItsClip) {
+  const auto file = ReadSkeletonFile(
+      Write("walk.bvh", ::gelenk::testing::WalkingBvh(5)), std::nullopt);
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->skeleton->joint_count(),
+            ::gelenk::testing::kWalkingJointCount);
+  ASSERT_TRUE(file->clip.has_value());
+  EXPECT_EQ(file->clip->frame_count(), 5);
+  EXPECT_EQ(file->clip->import.unit_m, 0.01);
+  EXPECT_EQ(file->message.display_name(), "walk.bvh");
+}
+
+TEST_F(FilesTest, ABvhComesRoundThroughItsPoses) {
+  const std::string path = Write("walk.bvh", ::gelenk::testing::WalkingBvh(20));
+  const auto clip = ReadBvhClip(path, std::nullopt);
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  ASSERT_TRUE(WriteBvhClip(*clip, clip->poses, Path("again.bvh")).ok());
+  const auto again = ReadBvhClip(Path("again.bvh"), std::nullopt);
+  ASSERT_TRUE(again.ok()) << again.status();
+  // Degrees and radians, back and forth.
+  EXPECT_LT((again->poses - clip->poses).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(again->document.frame_time_s, clip->document.frame_time_s);
+}
+
+TEST_F(FilesTest, ABrokenBvhIsToldByLineAndColumn) {
+  std::string text = ::gelenk::testing::WalkingBvh(2);
+  text.replace(text.find("OFFSET 0 0 0"), 12, "OFFSET 0 x 0");
+  const auto file = ReadSkeletonFile(Write("broken.bvh", text), std::nullopt);
+  EXPECT_EQ(file.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(file.status().message()),
+              HasSubstr("broken.bvh\": line 4, column 10"));
+}
+
+TEST_F(FilesTest, ASkeletonComesRoundThroughJson) {
+  const auto bvh = ReadSkeletonFile(
+      Write("walk.bvh", ::gelenk::testing::WalkingBvh(2)), std::nullopt);
+  ASSERT_TRUE(bvh.ok()) << bvh.status();
+  const auto json = ReadSkeletonFile(
+      Write("body.json", convert::SkeletonToJson(bvh->message)), std::nullopt);
+  ASSERT_TRUE(json.ok()) << json.status();
+  EXPECT_EQ(json->message.SerializeAsString(),
+            bvh->message.SerializeAsString());
+  EXPECT_FALSE(json->clip.has_value());
+}
+
+TEST_F(FilesTest, ABadSkeletonIsToldByItsField) {
+  const auto file = ReadSkeletonFile(
+      Write("bad.json",
+            R"({"joints": [{"jointId": "a", "type": "JOINT_TYPE_REVOLUTE"}]})"),
+      std::nullopt);
+  EXPECT_THAT(std::string(file.status().message()),
+              HasSubstr("bad.json\": joints[0].axis"));
+  const auto unknown =
+      ReadSkeletonFile(Write("unknown.json", R"({"foo": 1})"), std::nullopt);
+  EXPECT_THAT(std::string(unknown.status().message()), HasSubstr("foo"));
+}
+
+TEST_F(FilesTest, OtherKindsOfFilesAreRefused) {
+  const auto file = ReadSkeletonFile("model.fbx", std::nullopt);
+  EXPECT_EQ(std::string(file.status().message()),
+            "\"model.fbx\": want a .bvh or .json file");
+}
+
+TEST_F(FilesTest, InspectionTellsWhatIsInTheFile) {
+  const auto file = ReadSkeletonFile(
+      Write("walk.bvh", ::gelenk::testing::WalkingBvh(50)), std::nullopt);
+  ASSERT_TRUE(file.ok()) << file.status();
+  const Json json = InspectionJson(Inspect(*file));
+  EXPECT_EQ(json["joint_count"], ::gelenk::testing::kWalkingJointCount);
+  EXPECT_EQ(json["end_effectors"].size(),
+            size_t{::gelenk::testing::kWalkingEndSiteCount});
+  EXPECT_EQ(json["clip"]["frames"], 50);
+  EXPECT_EQ(json["clip"]["unit_m"], 0.01);
+  EXPECT_TRUE(json["clip"]["first_frame_jump"].is_null());
+  EXPECT_EQ(json["body"]["left_hand"], "LeftHand");
+  EXPECT_EQ(json["body"]["head"], "Head");
+  // Bones from foot to crown.
+  EXPECT_NEAR(json["height_m"].get<double>(), 1.642, 1e-3);
+  EXPECT_EQ(json["joints"][0]["type"], "free");
+  EXPECT_THAT(json["joints"][1]["channels"],
+              ElementsAre("Zrotation", "Xrotation", "Yrotation"));
+  EXPECT_THAT(json["joints"][0]["offset_m"], ElementsAre(0, 0, 0));
+
+  const std::string text = InspectionText(Inspect(*file));
+  EXPECT_THAT(text, HasSubstr("├ LeftUpLeg"));
+  EXPECT_THAT(text, HasSubstr("50, 1 s at 50 fps"));
+  EXPECT_THAT(text, HasSubstr("hips Hips, left hand LeftHand"));
+}
+
+TEST_F(FilesTest, TheTreeOfADeepFileIsPrinted) {
+  std::string text = "HIERARCHY\nROOT r\n{\nOFFSET 0 0 0\nCHANNELS 0\n";
+  constexpr int kDepth = 200;
+  for (int i = 0; i < kDepth; ++i) {
+    text += "JOINT j" + std::to_string(i) +
+            "\n{\nOFFSET 0 1 0\nCHANNELS 1 Xrotation\n";
+  }
+  for (int i = 0; i <= kDepth; ++i) text += "}\n";
+  const auto file = ReadSkeletonFile(Write("deep.bvh", text), std::nullopt);
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_THAT(InspectionText(Inspect(*file)), HasSubstr("└ j199"));
+}
+
+}  // namespace
+}  // namespace gelenk::cli

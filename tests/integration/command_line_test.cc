@@ -1,0 +1,333 @@
+// The real `gelenk`, with a service of its own and against a real gelenkd.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "convert/skeleton.h"
+#include "gelenk/client/connection.h"
+#include "gelenk/formats/bvh_reader.h"
+#include "tests/testing/example_skeletons.h"
+#include "tests/testing/server_process.h"
+#include "tests/testing/walking_bvh.h"
+
+namespace gelenk {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+
+constexpr int kFrames = 80;
+
+std::string Read(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+struct Ending {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+// A folder with a walk in it, and gelenk to be run there.
+class CommandLineTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    Write("walk.bvh", gelenk::testing::WalkingBvh(kFrames));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void Write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+  }
+
+  // `arguments` hold no quotes. Bounded in time; without a terminal.
+  Ending Run(std::vector<std::string> arguments) {
+    if (!server_.empty()) {
+      arguments.insert(arguments.begin(), {"--server", server_});
+    }
+    const std::string command = absl::StrCat(
+        "cd '", folder_.string(), "' && timeout 100 " GELENK " '",
+        absl::StrJoin(arguments, "' '"), "' >out.txt 2>err.txt </dev/null");
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), Read(folder_ / "out.txt"),
+            Read(folder_ / "err.txt")};
+  }
+
+  // What a command that succeeds prints with --format json.
+  json RunJson(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--format", "json"});
+    const Ending ending = Run(arguments);
+    EXPECT_EQ(ending.exit_code, 0) << ending.err;
+    return json::parse(ending.out, nullptr, false);
+  }
+
+  const fs::path folder_ =
+      fs::path(::testing::TempDir()) / absl::StrCat("gelenk-", getpid());
+  std::string server_;
+};
+
+// With a service in its own process, and with one that runs.
+enum class Host { kInProcess, kServer };
+
+class ServedCommandTest : public CommandLineTest,
+                          public ::testing::WithParamInterface<Host> {
+ protected:
+  void SetUp() override {
+    CommandLineTest::SetUp();
+    if (GetParam() == Host::kInProcess) return;
+    ASSERT_EQ(gelenkd_.Start(), absl::OkStatus());
+    server_ = gelenkd_.target();
+  }
+
+  gelenk::testing::ServerProcess gelenkd_{GELENKD};
+};
+
+INSTANTIATE_TEST_SUITE_P(Hosts, ServedCommandTest,
+                         ::testing::Values(Host::kInProcess, Host::kServer),
+                         [](const auto& info) {
+                           return info.param == Host::kInProcess ? "InProcess"
+                                                                 : "Server";
+                         });
+
+TEST_P(ServedCommandTest, PlayReachesEveryFrameInsideTheLimits) {
+  const json report = RunJson(
+      {"play", "walk.bvh", "--out", "solved.bvh", "--picture", "solved.svg"});
+  EXPECT_EQ(report["answered"], kFrames);
+  EXPECT_EQ(report["outcomes"]["converged"], kFrames);
+  EXPECT_EQ(report["limits_kept"], true);
+  EXPECT_LT(report["position_residual_mm"]["max"].get<double>(), 1.0);
+  EXPECT_LT(report["residual_disagreement_m"].get<double>(), 1e-6);
+  EXPECT_THAT(report["written"], ElementsAre("solved.bvh", "solved.svg"));
+
+  const auto clip = ReadBvh(Read(folder_ / "walk.bvh"));
+  const auto solved = ReadBvh(Read(folder_ / "solved.bvh"));
+  ASSERT_TRUE(solved.ok()) << solved.status();
+  EXPECT_EQ(solved->frame_count(), kFrames);
+  EXPECT_EQ(solved->channel_count(), clip->channel_count());
+  EXPECT_EQ(solved->frame_time_text, clip->frame_time_text);
+  EXPECT_THAT(Read(folder_ / "solved.svg"), StartsWith("<svg "));
+}
+
+TEST_P(ServedCommandTest, PlayTakesItsOptions) {
+  const json report = RunJson(
+      {"play", "walk.bvh", "--limits", "none", "--policy", "latest", "--batch",
+       "1", "--fps", "400", "--tolerance", "5e-3,5e-2", "--picture", "a.html"});
+  EXPECT_GT(report["answered"], 0);
+  EXPECT_EQ(report["refused"], 0);
+  EXPECT_EQ(report["limits"], "none");
+  EXPECT_EQ(report["position_tolerance_m"], 5e-3);
+  EXPECT_EQ(report["rotation_tolerance_rad"], 5e-2);
+  EXPECT_LT(report["played_fps"].get<double>(), 420);
+  EXPECT_THAT(Read(folder_ / "a.html"), StartsWith("<!DOCTYPE html>"));
+}
+
+TEST_P(ServedCommandTest, TheTableNamesWhatWasPlayed) {
+  const Ending ending = Run({"play", "walk.bvh"});
+  EXPECT_EQ(ending.exit_code, 0) << ending.err;
+  EXPECT_THAT(ending.out,
+              AllOf(HasSubstr("walk.bvh, 80 frames, 1.6 s at 50 fps"),
+                    HasSubstr("100 % converged (80 of 80)"),
+                    HasSubstr("every answer inside")));
+  // No progress bar without a terminal.
+  EXPECT_THAT(ending.err, IsEmpty());
+}
+
+TEST_P(ServedCommandTest, AnIkSolutionIsWhereItWasWanted) {
+  const json solution = RunJson(
+      {"ik", "walk.bvh", "--goal", "LeftHand=0.5,1.2,0.3", "--rotation-goal",
+       "Head=0,0.1,0,0.995", "--diagnose", "--tolerance", "1e-5,1e-4"});
+  EXPECT_EQ(solution["outcome"], "converged");
+  EXPECT_EQ(solution["goals"][1]["kind"], "rotation");
+  EXPECT_GT(solution["rank"], 0);
+
+  std::string pose;
+  for (const json& number : solution["positions"]) pose += number.dump() + "\n";
+  Write("pose.txt", pose);
+  const json frames = RunJson({"fk", "walk.bvh", "--pose-file", "pose.txt"});
+  for (const json& joint : frames["joints"]) {
+    if (joint["id"] != "LeftHand") continue;
+    EXPECT_NEAR(joint["world_translation_m"][0], 0.5, 2e-5);
+    EXPECT_NEAR(joint["world_translation_m"][1], 1.2, 2e-5);
+    EXPECT_NEAR(joint["world_translation_m"][2], 0.3, 2e-5);
+  }
+}
+
+TEST_P(ServedCommandTest, FkFollowsTheClip) {
+  const json frames = RunJson({"fk", "walk.bvh", "--frame", "50"});
+  ASSERT_THAT(frames["joints"], SizeIs(gelenk::testing::kWalkingJointCount));
+  // 1.1 m/s for a second.
+  EXPECT_NEAR(frames["joints"][0]["world_translation_m"][2], 1.1, 1e-6);
+  EXPECT_THAT(Run({"fk", "walk.bvh"}).out, HasSubstr("QW"));
+}
+
+TEST_P(ServedCommandTest, ASavedSkeletonIsAsGoodAsTheClip) {
+  EXPECT_EQ(Run({"info", "walk.bvh", "--save", "body.json"}).exit_code, 0);
+  EXPECT_EQ(RunJson({"info", "body.json"})["joint_count"],
+            gelenk::testing::kWalkingJointCount);
+  const std::vector<std::string> goal = {"--goal", "LeftHand=0.5,1.2,0.3"};
+  EXPECT_EQ(RunJson({"ik", "body.json", goal[0], goal[1]})["positions"],
+            RunJson({"ik", "walk.bvh", goal[0], goal[1]})["positions"]);
+}
+
+TEST_P(ServedCommandTest, UnknownGoalsAreNamed) {
+  const Ending ending = Run({"ik", "walk.bvh", "--goal", "Nose=0,1,0"});
+  EXPECT_EQ(ending.exit_code, 1);
+  EXPECT_THAT(ending.err,
+              AllOf(StartsWith("gelenk: goals[0]"), HasSubstr("\"Nose\"")));
+}
+
+TEST_P(ServedCommandTest, PosesOfTheWrongSizeAreRefused) {
+  const Ending ending = Run({"fk", "walk.bvh", "--pose", "1,2,3"});
+  EXPECT_EQ(ending.exit_code, 1);
+  EXPECT_THAT(ending.err, HasSubstr("got 3"));
+}
+
+TEST_F(CommandLineTest, BadFilesAreToldByPlace) {
+  Ending ending = Run({"play", "missing.bvh"});
+  EXPECT_EQ(ending.exit_code, 1);
+  EXPECT_THAT(ending.err, HasSubstr("\"missing.bvh\""));
+  EXPECT_THAT(ending.out, IsEmpty());
+
+  std::string text = gelenk::testing::WalkingBvh(2);
+  text.replace(text.find("OFFSET 0 0 0"), 12, "OFFSET 0 x 0");
+  Write("broken.bvh", text);
+  ending = Run({"info", "broken.bvh"});
+  EXPECT_EQ(ending.exit_code, 1);
+  EXPECT_THAT(ending.err, HasSubstr("line 4, column 10"));
+
+  Write("still.bvh", gelenk::testing::WalkingBvh(0));
+  ending = Run({"play", "still.bvh"});
+  EXPECT_EQ(ending.exit_code, 1);
+  EXPECT_THAT(ending.err, HasSubstr("no frames to play"));
+
+  ending = Run({"play", "walk.bvh", "--out", "no/such/folder.bvh"});
+  EXPECT_EQ(ending.exit_code, 1);
+  EXPECT_THAT(ending.err, HasSubstr("no/such/folder.bvh"));
+}
+
+TEST_F(CommandLineTest, MistakesOnTheCommandLineEndWithTwo) {
+  const std::vector<std::vector<std::string>> mistakes = {
+      {"dance"},
+      {"play"},
+      {"play", "walk.bvh", "--speed", "2"},
+      {"play", "walk.bvh", "--policy", "some"},
+      {"play", "walk.bvh", "--batch", "0"},
+      {"play", "walk.bvh", "--fps", "-1"},
+      {"play", "walk.bvh", "--tolerance", "0"},
+      {"ik", "walk.bvh"},
+      {"ik", "walk.bvh", "--goal", "Head=1,2"},
+      {"ik", "walk.bvh", "--goal", "Head=1,2,3", "--start", "a"},
+      {"fk", "walk.bvh", "--frame", "1", "--pose", "1"},
+      {"info", "walk.bvh", "--format", "yaml"},
+      {"sessions"},
+  };
+  for (const auto& mistake : mistakes) {
+    const Ending ending = Run(mistake);
+    EXPECT_EQ(ending.exit_code, 2) << absl::StrJoin(mistake, " ");
+    EXPECT_THAT(ending.err, StartsWith("gelenk: "));
+    EXPECT_EQ(std::count(ending.err.begin(), ending.err.end(), '\n'), 1);
+  }
+}
+
+TEST_F(CommandLineTest, HelpAndVersionAreNoMistakes) {
+  for (const char* command : {"info", "fk", "ik", "play", "sessions"}) {
+    const Ending ending = Run({command, "--help"});
+    EXPECT_EQ(ending.exit_code, 0);
+    EXPECT_THAT(ending.out, HasSubstr(absl::StrCat("gelenk ", command)));
+    EXPECT_THAT(ending.out, HasSubstr("Examples:"));
+  }
+  EXPECT_THAT(Run({"--version"}).out, StartsWith("gelenk "));
+}
+
+TEST_F(CommandLineTest, AServerThatIsNotThereIsNamed) {
+  server_ = "127.0.0.1:1";
+  const Ending ending = Run({"sessions"});
+  EXPECT_EQ(ending.exit_code, 1);
+  EXPECT_EQ(ending.err, "gelenk: no server answers at 127.0.0.1:1\n");
+}
+
+class SessionsCommandTest : public CommandLineTest {
+ protected:
+  void SetUp() override {
+    CommandLineTest::SetUp();
+    ASSERT_EQ(gelenkd_.Start(), absl::OkStatus());
+    server_ = gelenkd_.target();
+  }
+
+  void CreateSession(const std::string& id) {
+    client::Connection connection(server_);
+    v1::CreateSkeletonRequest skeleton;
+    skeleton.set_skeleton_id("panda");
+    convert::ToProto(*gelenk::testing::PandaArm(), skeleton.mutable_skeleton());
+    ASSERT_TRUE(
+        connection.Call(&v1::KinematicsService::Stub::CreateSkeleton, skeleton)
+            .ok());
+    v1::CreateSessionRequest session;
+    session.set_session_id(id);
+    session.mutable_session()->set_skeleton("skeletons/panda");
+    v1::Goal* goal = session.mutable_session()->add_goals();
+    goal->set_goal_id("reach");
+    goal->mutable_position()->set_end_effector_id("tip");
+    ASSERT_TRUE(
+        connection.Call(&v1::SessionService::Stub::CreateSession, session)
+            .ok());
+  }
+
+  gelenk::testing::ServerProcess gelenkd_{GELENKD};
+};
+
+TEST_F(SessionsCommandTest, ListsShowsAndDeletes) {
+  EXPECT_THAT(RunJson({"sessions"})["sessions"], IsEmpty());
+  CreateSession("robot");
+  EXPECT_THAT(Run({"sessions", "list"}).out,
+              AllOf(HasSubstr("sessions/robot"), HasSubstr("skeletons/panda"),
+                    HasSubstr("active")));
+  EXPECT_EQ(RunJson({"sessions"})["sessions"][0]["name"], "sessions/robot");
+  EXPECT_THAT(Run({"sessions", "get", "robot"}).out, HasSubstr("reach"));
+  EXPECT_EQ(RunJson({"sessions", "get", "sessions/robot"})["skeleton"],
+            "skeletons/panda");
+
+  EXPECT_EQ(Run({"sessions", "delete", "robot"}).exit_code, 0);
+  EXPECT_THAT(Run({"sessions"}).out, Not(HasSubstr("robot")));
+  const Ending gone = Run({"sessions", "get", "robot"});
+  EXPECT_EQ(gone.exit_code, 1);
+  EXPECT_THAT(gone.err, HasSubstr("robot"));
+}
+
+TEST_F(SessionsCommandTest, PlayLeavesNothingBehind) {
+  EXPECT_EQ(Run({"play", "walk.bvh"}).exit_code, 0);
+  EXPECT_EQ(Run({"fk", "walk.bvh"}).exit_code, 0);
+  EXPECT_THAT(RunJson({"sessions"})["sessions"], IsEmpty());
+  client::Connection connection(server_);
+  const auto skeletons = connection.Call(
+      &v1::KinematicsService::Stub::ListSkeletons, v1::ListSkeletonsRequest());
+  ASSERT_TRUE(skeletons.ok()) << skeletons.status();
+  EXPECT_EQ(skeletons->skeletons_size(), 0);
+}
+
+}  // namespace
+}  // namespace gelenk
