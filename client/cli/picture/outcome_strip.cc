@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "client/cli/picture/style.h"
+#include "client/cli/text/format.h"
 
 namespace gelenk::cli {
 namespace {
@@ -50,14 +50,6 @@ int Badness(const Answer& answer) {
   return kKinds - 1;
 }
 
-// Shares are never rounded up to all or down to none.
-std::string Share(int count, int total) {
-  const double percent = 100.0 * count / total;
-  const double shown = count < total ? std::min(percent, 99.99) : percent;
-  return absl::StrFormat("%.*f %%", count == total ? 0 : 2,
-                         std::max(shown, 0.01));
-}
-
 }  // namespace
 
 void DrawOutcomeStrip(const Playback& playback, const Box& box, Svg& svg) {
@@ -89,7 +81,7 @@ void DrawOutcomeKey(const Playback& playback, const Point& at, Svg& svg) {
     if (counts[badness] == 0) continue;
     const Kind kind = KindOf(badness);
     const std::string label = absl::StrCat(
-        kind.name, " ", Share(counts[badness], playback.frame_count()));
+        kind.name, " ", Percent(counts[badness], playback.frame_count()));
     svg.Rectangle({x, at.y() - 10, 11, 11}, 2, kind.fill);
     svg.Text({x + 17, at.y()}, label, "");
     x += 17 + 7.0 * label.size() + 18;

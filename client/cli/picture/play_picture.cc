@@ -15,6 +15,7 @@
 #include "client/cli/picture/svg.h"
 #include "client/cli/picture/time_chart.h"
 #include "client/cli/play/summary.h"
+#include "client/cli/text/format.h"
 
 namespace gelenk::cli {
 namespace {
@@ -37,13 +38,16 @@ std::string Title(const Playback& playback) {
 
 std::string Subtitle(const Playback& playback, const Summary& summary) {
   return absl::StrFormat(
-      "%d frames, %.1f s at %.4g fps  ·  %d joints, %d goals  ·  converged "
-      "%.2f %%  ·  residual p50 %.2g mm, p99 %.2g mm  ·  solve p50 %.3g µs, "
-      "p99 %.3g µs",
-      summary.frame_count, summary.clip_duration_s, summary.clip_fps,
-      playback.skeleton->joint_count(), playback.goals.size(),
-      100 * summary.converged_share, summary.position_mm.p50,
-      summary.position_mm.p99, summary.solve_us.p50, summary.solve_us.p99);
+      "%d frames, %s s at %s fps  ·  %d joints, %d goals  ·  converged %s  ·  "
+      "residual p50 %s mm, p99 %s mm  ·  solve p50 %s µs, p99 %s µs",
+      summary.frame_count, Significant(summary.clip_duration_s, 4),
+      Significant(summary.clip_fps, 4), playback.skeleton->joint_count(),
+      playback.goals.size(),
+      Percent(summary.converged_count, summary.answered_count),
+      Significant(summary.position_mm.p50, 2),
+      Significant(summary.position_mm.p99, 2),
+      Significant(summary.solve_us.p50, 3),
+      Significant(summary.solve_us.p99, 3));
 }
 
 std::vector<double> Scaled(std::vector<double> values, double factor) {

@@ -1,6 +1,7 @@
 #include "client/cli/play/play_report.h"
 
 #include <numbers>
+#include <variant>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -23,14 +24,6 @@ bool IsInsideLimits(const Residuals& residuals) {
 bool Agrees(const Residuals& residuals) {
   return residuals.disagreement_m <= kErrorRounding &&
          residuals.disagreement_rad <= kErrorRounding;
-}
-
-// Never 100.00 when it is not all.
-std::string Percent(int count, int total) {
-  if (total == 0) return "-";
-  const double percent = 100.0 * count / total;
-  return absl::StrCat(
-      count == total ? "100" : Fixed(std::min(percent, 99.99), 2), " %");
 }
 
 std::string GoalsText(const Playback& playback) {

@@ -1,5 +1,6 @@
 #include "client/cli/text/format.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
@@ -19,6 +20,14 @@ std::string Fixed(double value, int decimals) {
 
 std::string Significant(double value, int digits) {
   return absl::StrFormat("%.*g", digits, value);
+}
+
+std::string Percent(int64_t count, int64_t total) {
+  if (total == 0) return "-";
+  if (count == 0 || count == total) return count == 0 ? "0 %" : "100 %";
+  const double percent =
+      100 * static_cast<double>(count) / static_cast<double>(total);
+  return absl::StrCat(Fixed(std::clamp(percent, 0.01, 99.99), 2), " %");
 }
 
 }  // namespace gelenk::cli

@@ -2,6 +2,7 @@
 #ifndef CLIENT_CLI_TEXT_FORMAT_H_
 #define CLIENT_CLI_TEXT_FORMAT_H_
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -20,6 +21,10 @@ std::string Fixed(double value, int decimals);
 
 // With so many digits that count.
 std::string Significant(double value, int digits);
+
+// How much `count` is of `total`: "99.95 %", or "100 %" when it is all; never
+// rounded up to all, nor down to nothing. "-" of nothing.
+std::string Percent(int64_t count, int64_t total);
 
 }  // namespace gelenk::cli
 

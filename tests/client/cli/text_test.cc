@@ -82,6 +82,15 @@ TEST(FormatTest, SignificantKeepsDigitsThatCount) {
   EXPECT_EQ(Significant(119.99, 4), "120");
 }
 
+TEST(FormatTest, PercentIsNeverRoundedToAllOrNothing) {
+  EXPECT_EQ(Percent(2752, 2752), "100 %");
+  EXPECT_EQ(Percent(99999, 100000), "99.99 %");
+  EXPECT_EQ(Percent(1, 100000), "0.01 %");
+  EXPECT_EQ(Percent(7, 8), "87.50 %");
+  EXPECT_EQ(Percent(0, 8), "0 %");
+  EXPECT_EQ(Percent(0, 0), "-");
+}
+
 TEST(FormatTest, JsonKeepsTheOrderOfKeysAndSurvivesBadBytes) {
   EXPECT_EQ(JsonText({{"b", 1}, {"a", "\xff"}}),
             "{\n  \"b\": 1,\n  \"a\": \"\xEF\xBF\xBD\"\n}\n");
