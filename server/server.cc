@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/synchronization/mutex.h"
 #include "absl/synchronization/notification.h"
@@ -77,8 +78,12 @@ class GrpcServer final : public Server {
       return absl::UnavailableError(
           absl::StrCat("listen: cannot bind ", options.listen));
     }
-    address_ = absl::StrCat(options.listen.substr(0, options.listen.rfind(':')),
-                            ":", port);
+    const bool has_port = !absl::StartsWith(options.listen, "unix:");
+    address_ =
+        has_port
+            ? absl::StrCat(options.listen.substr(0, options.listen.rfind(':')),
+                           ":", port)
+            : options.listen;
     for (const std::unique_ptr<IoThread>& thread : threads_) {
       ServeKinematics(&kinematics_, &state_, thread.get());
       ServeSessions(&sessions_, &state_, thread.get());

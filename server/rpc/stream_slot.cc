@@ -1,6 +1,7 @@
 #include "server/rpc/stream_slot.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -65,15 +66,71 @@ absl::Status FrameFromProto(const v1::TargetFrame& proto, InputFrame& frame) {
   return violations.ToStatus();
 }
 
+absl::Status CheckAffinity(const Session& session, const Session* neighbour) {
+  if (neighbour == nullptr ||
+      session.affinity_key() == neighbour->affinity_key()) {
+    return absl::OkStatus();
+  }
+  return absl::FailedPreconditionError(absl::StrCat(
+      "attach.session: ", session.name(), " has affinity key \"",
+      session.affinity_key(), "\", the stream's sessions another one"));
+}
+
+// Where a client says that it was.
+struct ResumePoint {
+  Eigen::VectorXd positions;
+  int64_t sequence_number = 0;
+  std::optional<Continuation> continuation;
+};
+
+absl::StatusOr<ResumePoint> ReadResumePoint(const v1::PoseFrame& from,
+                                            const Skeleton& skeleton,
+                                            InstructionSet level) {
+  ResumePoint point;
+  absl::StatusOr<Eigen::VectorXd> positions =
+      convert::FromProto(skeleton, from.pose());
+  if (!positions.ok()) {
+    Violations violations;
+    violations.AddStatus("resume_from.pose", positions.status());
+    return violations.ToStatus();
+  }
+  point.positions = *std::move(positions);
+  point.sequence_number = from.sequence_number();
+  if (from.continuation().empty()) return point;
+  absl::StatusOr<Continuation> continuation =
+      ReadContinuation(from.continuation(), level);
+  if (!continuation.ok()) return continuation.status();
+  point.continuation = *std::move(continuation);
+  return point;
+}
+
+absl::Status Resume(Session& session, DriverId driver,
+                    const ResumePoint& point) {
+  const auto& continuation = point.continuation;
+  return session.Resume(
+      driver, point.positions, point.sequence_number,
+      continuation ? &continuation->goals : nullptr,
+      continuation ? &continuation->world_from_skeleton : nullptr);
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<StreamSlot>> StreamSlot::Attach(
-    ServiceState& state, const v1::AttachSession& request, absl::Time now,
-    v1::StreamEvent* event) {
+    ServiceState& state, const v1::AttachSession& request,
+    const Session* neighbour, absl::Time now, v1::StreamEvent* event) {
   if (absl::Status status = CheckAttach(request); !status.ok()) return status;
   absl::StatusOr<std::shared_ptr<Session>> session =
       state.sessions.Find(kDefaultTenant, request.session(), now);
   if (!session.ok()) return session.status();
+  if (absl::Status status = CheckAffinity(**session, neighbour); !status.ok()) {
+    return status;
+  }
+  absl::StatusOr<ResumePoint> point = ResumePoint();
+  if (request.has_resume_from()) {
+    point = ReadResumePoint(request.resume_from(), (*session)->skeleton(),
+                            state.options.instruction_set);
+    if (!point.ok()) return point.status();
+  }
   const DriverId driver = state.next_driver++;
   if (absl::Status status = (*session)->Claim(driver, request.take_over(), now);
       !status.ok()) {
@@ -82,17 +139,16 @@ absl::StatusOr<std::unique_ptr<StreamSlot>> StreamSlot::Attach(
   // From here on the slot gives the session free when something fails.
   std::unique_ptr<StreamSlot> slot(
       new StreamSlot(state, *session, driver, request));
-  std::string inexact_because;
   if (request.has_resume_from()) {
-    absl::Status status = slot->Resume(
-        request.resume_from(), state.options.instruction_set, &inexact_because);
-    if (!status.ok()) return status;
+    if (absl::Status status = Resume(**session, driver, *point); !status.ok()) {
+      return status;
+    }
   }
   event->set_kind(v1::StreamEvent::KIND_ATTACHED);
   event->set_slot(request.slot());
   event->set_sequence_number((*session)->sequence_number());
-  if (!inexact_because.empty()) {
-    ToProto(absl::FailedPreconditionError(inexact_because),
+  if (point->continuation && !point->continuation->inexact_because.empty()) {
+    ToProto(absl::FailedPreconditionError(point->continuation->inexact_because),
             event->mutable_status());
   }
   return slot;
@@ -120,28 +176,6 @@ size_t StreamSlot::answer_bytes() const {
           : 0;
   return kReport + frames +
          sizeof(double) * session_->skeleton().position_count();
-}
-
-absl::Status StreamSlot::Resume(const v1::PoseFrame& from, InstructionSet level,
-                                std::string* inexact_because) {
-  absl::StatusOr<Eigen::VectorXd> positions =
-      convert::FromProto(session_->skeleton(), from.pose());
-  if (!positions.ok()) {
-    Violations violations;
-    violations.AddStatus("resume_from.pose", positions.status());
-    return violations.ToStatus();
-  }
-  if (from.continuation().empty()) {
-    return session_->Resume(driver_, *positions, from.sequence_number(),
-                            nullptr, nullptr);
-  }
-  absl::StatusOr<Continuation> continuation =
-      ReadContinuation(from.continuation(), level);
-  if (!continuation.ok()) return continuation.status();
-  *inexact_because = continuation->inexact_because;
-  return session_->Resume(driver_, *positions, from.sequence_number(),
-                          &continuation->goals,
-                          &continuation->world_from_skeleton);
 }
 
 absl::Status StreamSlot::Take(const v1::TargetFrame& frame, absl::Time now) {

@@ -20,11 +20,13 @@ namespace gelenk::server {
 
 class StreamSlot {
  public:
-  // Finds, claims and resumes the session that `request` names. `event`
-  // receives KIND_ATTACHED.
+  // Finds, claims and resumes the session that `request` names; its affinity
+  // key must be that of `neighbour`, where there is one. `event` receives
+  // KIND_ATTACHED. Who drives the session now keeps it when `request` has a
+  // fault.
   static absl::StatusOr<std::unique_ptr<StreamSlot>> Attach(
-      ServiceState& state, const v1::AttachSession& request, absl::Time now,
-      v1::StreamEvent* event);
+      ServiceState& state, const v1::AttachSession& request,
+      const Session* neighbour, absl::Time now, v1::StreamEvent* event);
 
   // Gives the session free.
   ~StreamSlot();
@@ -56,8 +58,6 @@ class StreamSlot {
  private:
   StreamSlot(const ServiceState& state, std::shared_ptr<Session> session,
              DriverId driver, const v1::AttachSession& request);
-  absl::Status Resume(const v1::PoseFrame& from, InstructionSet level,
-                      std::string* inexact_because);
   // Fills joint frames and continuation where they are due.
   void AddExtras(v1::PoseFrame* answer);
 

@@ -67,19 +67,26 @@ void StreamingSolveCall::OnStarted(bool ok) {
 
 void StreamingSolveCall::OnRead(bool ok) {
   reading_ = false;
-  if (ok) {
-    has_message_ = true;
-    attached_ = false;
-    next_frame_ = 0;
-    read_time_ = absl::Now();
-  } else {
+  if (!ok) {
     half_closed_ = true;
+  } else if (working_) {
+    message_waits_ = true;
+  } else {
+    TakeMessage();
   }
   if (finished_call_) {
     delete this;
     return;
   }
   Advance();
+}
+
+void StreamingSolveCall::TakeMessage() {
+  has_message_ = true;
+  next_attach_ = 0;
+  next_frame_ = 0;
+  next_detach_ = 0;
+  read_time_ = absl::Now();
 }
 
 void StreamingSolveCall::OnWritten(bool ok) {
@@ -91,6 +98,10 @@ void StreamingSolveCall::OnWritten(bool ok) {
 
 void StreamingSolveCall::OnWorked(bool) {
   working_ = false;
+  if (message_waits_) {
+    message_waits_ = false;
+    TakeMessage();
+  }
   Advance();
 }
 
@@ -132,9 +143,11 @@ void StreamingSolveCall::Finish() {
 bool StreamingSolveCall::Consume(LevenbergMarquardtSolver& solver,
                                  bool heavy_allowed) {
   const v1::StreamingSolveRequest& request = *request_.get();
-  if (!attached_) {
-    attached_ = true;
-    for (const v1::AttachSession& attach : request.attach()) Attach(attach);
+  for (; next_attach_ < request.attach_size(); ++next_attach_) {
+    const v1::AttachSession& attach = request.attach(next_attach_);
+    if (IsFull()) return true;
+    if (!AnswerLast(attach.slot(), solver, heavy_allowed)) return false;
+    Attach(attach);
   }
   bool time_is_up = false;
   while (next_frame_ < request.frames_size()) {
@@ -146,7 +159,12 @@ bool StreamingSolveCall::Consume(LevenbergMarquardtSolver& solver,
     // Asked after a frame, so that each turn gets one further.
     time_is_up = absl::Now() - burst_begin_ > kBurst;
   }
-  for (int slot : request.detach()) Detach(slot, absl::OkStatus());
+  for (; next_detach_ < request.detach_size(); ++next_detach_) {
+    const int slot = request.detach(next_detach_);
+    if (IsFull()) return true;
+    if (!AnswerLast(slot, solver, heavy_allowed)) return false;
+    Detach(slot, absl::OkStatus());
+  }
   has_message_ = false;
   return true;
 }
@@ -177,19 +195,37 @@ bool StreamingSolveCall::ConsumeFrame(const v1::TargetFrame& frame,
 
 bool StreamingSolveCall::AnswerMerged(LevenbergMarquardtSolver& solver,
                                       bool heavy_allowed) {
-  for (const auto& [index, slot] : slots_) {
-    if (!slot->has_unanswered()) continue;
-    if (!heavy_allowed && slot->IsHeavy()) return false;
-    AnswerSlot(index, *slot, solver);
+  // From where the last message was full, so that no slot is left out for
+  // ever.
+  auto slot = slots_.upper_bound(last_merged_);
+  for (size_t i = 0; i < slots_.size(); ++i, ++slot) {
+    if (slot == slots_.end()) slot = slots_.begin();
+    if (!slot->second->has_unanswered()) continue;
+    if (filled_bytes_ >= kMaxAnswerBytes) return true;
+    if (!AnswerLast(slot->first, solver, heavy_allowed)) return false;
+    last_merged_ = slot->first;
   }
+  return true;
+}
+
+bool StreamingSolveCall::AnswerLast(int index, LevenbergMarquardtSolver& solver,
+                                    bool heavy_allowed) {
+  const auto found = slots_.find(index);
+  if (found == slots_.end()) return true;
+  StreamSlot& slot = *found->second;
+  if (!slot.has_unanswered()) return true;
+  if (!heavy_allowed && slot.IsHeavy()) return false;
+  AnswerSlot(index, slot, solver);
   return true;
 }
 
 void StreamingSolveCall::ConsumeOnWorker() {
   working_ = true;
-  const auto work = [this](LevenbergMarquardtSolver& solver) {
+  // Asked now: the next message may come while the worker is at it.
+  const auto work = [this, has_message =
+                               has_message_](LevenbergMarquardtSolver& solver) {
     burst_begin_ = absl::Now();
-    if (has_message_) Consume(solver, true);
+    if (has_message) Consume(solver, true);
     AnswerMerged(solver, true);
     alarm_.Set(thread_->queue(), std::chrono::system_clock::now(), &worked_);
   };
@@ -201,7 +237,10 @@ void StreamingSolveCall::AnswerSlot(int index, StreamSlot& slot,
                                     LevenbergMarquardtSolver& solver) {
   v1::PoseFrame* answer = AddAnswer(slot.answer_bytes());
   const absl::Status status = slot.Answer(solver, read_time_, answer);
-  if (status.ok()) return;
+  if (status.ok()) {
+    filled_bytes_ += answer->continuation().size();
+    return;
+  }
   // Lost between taking the frame and solving; the next tick says so.
   answer->set_slot(index);
   ToProto(status, answer->mutable_status());
@@ -215,15 +254,10 @@ void StreamingSolveCall::Attach(const v1::AttachSession& request) {
       absl::ResourceExhaustedError(
           absl::StrCat("attach: want at most ", max_slots, " slots"));
   if (slots_.size() < static_cast<size_t>(max_slots)) {
-    slot = StreamSlot::Attach(*state_, request, read_time_, &attached);
-  }
-  if (slot.ok() && !slots_.empty() &&
-      (*slot)->session().affinity_key() !=
-          slots_.begin()->second->session().affinity_key()) {
-    slot = absl::FailedPreconditionError(
-        absl::StrCat("attach.session: ", request.session(),
-                     " has affinity key \"", (*slot)->session().affinity_key(),
-                     "\", the stream's sessions another one"));
+    slot = StreamSlot::Attach(
+        *state_, request,
+        slots_.empty() ? nullptr : &slots_.begin()->second->session(),
+        read_time_, &attached);
   }
   if (!slot.ok()) {
     v1::StreamEvent* event =

@@ -46,6 +46,8 @@ class StreamingSolveCall final : public Ticking {
   void OnWorked(bool ok);
   void OnFinished(bool ok);
 
+  // Begins with the message that was read.
+  void TakeMessage();
   // Goes on with whatever can be gone on with.
   void Advance();
   // Works through the message that was read, as far as answers may pile up.
@@ -53,8 +55,12 @@ class StreamingSolveCall final : public Ticking {
   bool Consume(LevenbergMarquardtSolver& solver, bool heavy_allowed);
   bool ConsumeFrame(const v1::TargetFrame& frame,
                     LevenbergMarquardtSolver& solver, bool heavy_allowed);
-  // Solves what LATEST_WINS slots have merged. False as in Consume.
+  // Solves what LATEST_WINS slots have merged, as far as a message holds it.
+  // False as in Consume.
   bool AnswerMerged(LevenbergMarquardtSolver& solver, bool heavy_allowed);
+  // The same for one slot that is about to go.
+  bool AnswerLast(int slot, LevenbergMarquardtSolver& solver,
+                  bool heavy_allowed);
   void ConsumeOnWorker();
 
   void Attach(const v1::AttachSession& request);
@@ -97,8 +103,13 @@ class StreamingSolveCall final : public Ticking {
 
   // Where Consume stands in request_.
   bool has_message_ = false;
-  bool attached_ = false;
+  int next_attach_ = 0;
   int next_frame_ = 0;
+  int next_detach_ = 0;
+  // A message came while a worker was at the slots.
+  bool message_waits_ = false;
+  // Slot that AnswerMerged answered last.
+  int last_merged_ = -1;
   absl::Time read_time_;
   absl::Time burst_begin_;
 

@@ -71,6 +71,7 @@ void WatchSessionCall::Look() {
   response_.Clear();
   const absl::Time now = absl::Now();
   if (const absl::Status ended = session_->ended(); !ended.ok()) {
+    said_ended_ = true;
     response_.mutable_event()->set_kind(v1::StreamEvent::KIND_DETACHED);
     ToProto(ended, response_.mutable_event()->mutable_status());
     return Write();
@@ -109,9 +110,7 @@ void WatchSessionCall::Write() {
 
 void WatchSessionCall::OnWritten(bool ok) {
   if (!ok) return Finish(absl::CancelledError("the viewer is gone"));
-  if (const absl::Status ended = session_->ended(); !ended.ok()) {
-    return Finish(ended);
-  }
+  if (said_ended_) return Finish(session_->ended());
   alarm_set_ = true;
   alarm_.Set(thread_->queue(), absl::ToChronoTime(last_write_ + interval_),
              &alarmed_);

@@ -70,6 +70,7 @@ class WatchSessionCall {
   bool finished_call_ = false;
   bool done_ = false;  // the call is over for the transport
   bool said_draining_ = false;
+  bool said_ended_ = false;
 };
 
 }  // namespace gelenk::server
