@@ -101,7 +101,7 @@ absl::StatusOr<Goal> FromProto(const v1::Goal& proto) {
     case v1::Goal::kPose:
       goal.kind = FromProto(proto.pose());
       return goal;
-    case v1::Goal::KIND_NOT_SET:
+    default:
       break;
   }
   return NoKind(proto);
@@ -145,7 +145,7 @@ absl::Status FromProto(const v1::GoalTarget& proto, GoalTarget* target) {
     case v1::GoalTarget::kWorldPose:
       *target = FromProto(proto.world_pose());
       return absl::OkStatus();
-    case v1::GoalTarget::TARGET_NOT_SET:
+    default:
       break;
   }
   Violations violations;
