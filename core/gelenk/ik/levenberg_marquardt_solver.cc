@@ -28,6 +28,7 @@ kernel::AttemptFunction AttemptFor(InstructionSet level) {
 }
 
 kernel::Settings SettingsFor(const IkProblem& problem,
+                             const kernel::TreeLayout& tree,
                              const SolverOptions& options) {
   kernel::Settings settings = {};
   const RigidTransform& base = problem.world_from_skeleton();
@@ -42,6 +43,8 @@ kernel::Settings SettingsFor(const IkProblem& problem,
   settings.position_tolerance2 =
       options.position_tolerance_m * options.position_tolerance_m;
   settings.rotation_tolerance2 = chord * chord;
+  settings.lower = tree.lower;
+  settings.upper = tree.upper;
   settings.max_iterations = options.max_iterations;
   return settings;
 }
@@ -157,7 +160,7 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
   std::copy(positions.begin(), positions.end(), start_.begin());
   ClampToLimits(skeleton, positions);
 
-  kernel::Settings settings = SettingsFor(problem, options);
+  kernel::Settings settings = SettingsFor(problem, tree, options);
   const int budget = RestartBudget(options, start);
   settings.impatient = budget > 0;
   kernel::Attempt attempt = attempt_(tree, problem.targets().data(), settings,

@@ -214,7 +214,7 @@ class SparseTreeBuilder {
     }
   }
 
-  kernel::Column MakeColumn(int j, int k) const {
+  kernel::Column MakeColumn(int j, int k) {
     const Joint& joint = skeleton_.joint(j);
     kernel::Column column = {};
     column.node = node_of_joint_[j];
@@ -222,8 +222,10 @@ class SparseTreeBuilder {
                             (joint.type == JointType::kFree && k >= 3);
     column.position = quaternion ? -1 : skeleton_.span(j).position_offset + k;
     const PositionBounds& bounds = skeleton_.position_bounds();
-    column.lower = quaternion ? -kInfinity : bounds.lower[column.position];
-    column.upper = quaternion ? kInfinity : bounds.upper[column.position];
+    tree_.lower_.push_back(quaternion ? -kInfinity
+                                      : bounds.lower[column.position]);
+    tree_.upper_.push_back(quaternion ? kInfinity
+                                      : bounds.upper[column.position]);
     column.stiffness = std::max(
         joint.stiffness.empty() ? 1 : joint.stiffness[k], kLeastStiffness);
     return column;
@@ -323,6 +325,8 @@ class SparseTreeBuilder {
     tree_.nodes_.shrink_to_fit();
     tree_.rotation_limits_.shrink_to_fit();
     tree_.columns_.shrink_to_fit();
+    tree_.lower_.shrink_to_fit();
+    tree_.upper_.shrink_to_fit();
     tree_.path_columns_.shrink_to_fit();
     tree_.followers_.shrink_to_fit();
     tree_.tasks_.shrink_to_fit();
@@ -347,6 +351,8 @@ kernel::TreeLayout SparseTree::Layout() const {
   return {nodes_.data(),
           rotation_limits_.data(),
           columns_.data(),
+          lower_.data(),
+          upper_.data(),
           path_columns_.data(),
           followers_.data(),
           tasks_.data(),
@@ -362,8 +368,9 @@ kernel::TreeLayout SparseTree::Layout() const {
 size_t SparseTree::ByteSize() const {
   const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return sizeof(*this) + bytes(nodes_) + bytes(rotation_limits_) +
-         bytes(columns_) + bytes(path_columns_) + bytes(followers_) +
-         bytes(tasks_) + bytes(joints_of_nodes_) + bytes(joints_of_columns_);
+         bytes(columns_) + bytes(lower_) + bytes(upper_) +
+         bytes(path_columns_) + bytes(followers_) + bytes(tasks_) +
+         bytes(joints_of_nodes_) + bytes(joints_of_columns_);
 }
 
 }  // namespace gelenk

@@ -43,6 +43,8 @@ class SparseTree {
   std::vector<kernel::Node> nodes_;
   std::vector<kernel::RotationLimit> rotation_limits_;
   std::vector<kernel::Column> columns_;
+  std::vector<double> lower_;  // per column
+  std::vector<double> upper_;
   std::vector<kernel::PathColumn> path_columns_;
   std::vector<kernel::PathFollower> followers_;
   std::vector<kernel::Task> tasks_;

@@ -457,9 +457,9 @@ class Solver {
       bool blocked = false;
       if (column.position >= 0) {
         const double value = q_[column.position];
-        blocked = (value <= column.lower && g < 0) ||
-                  (value >= column.upper && g > 0) ||
-                  column.lower == column.upper;
+        const double lower = settings_.lower[c], upper = settings_.upper[c];
+        blocked = (value <= lower && g < 0) || (value >= upper && g > 0) ||
+                  lower == upper;
       } else if (work_.touched[column.node] != 0) {
         blocked = IsBlockedRotation(column, c, g);
       }
@@ -595,7 +595,8 @@ class Solver {
       const Column& column = tree_.columns[c];
       if (column.position < 0) continue;
       const double value = q_[column.position] + scale * work_.step[c];
-      q_[column.position] = Min(Max(value, column.lower), column.upper);
+      q_[column.position] =
+          Min(Max(value, settings_.lower[c]), settings_.upper[c]);
     }
     for (int i = 0; i < tree_.node_count; ++i) {
       const Node& node = tree_.nodes[i];

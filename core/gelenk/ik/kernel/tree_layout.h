@@ -73,8 +73,6 @@ struct Column {
   int depth;      // columns above it
   int row;        // first number of its packed row of H
   int ancestors;  // where its ancestors start in TreeLayout::path_columns
-  double lower;   // of q[position]
-  double upper;
   double stiffness;
 };
 
@@ -123,6 +121,9 @@ struct TreeLayout {
   const Node* nodes;
   const RotationLimit* rotation_limits;  // per node, read if limits_rotation
   const Column* columns;
+  // Per column the skeleton's bounds of q[position]; infinite for a rotation's.
+  const double* lower;
+  const double* upper;
   const PathColumn* path_columns;
   const PathFollower* followers;
   const Task* tasks;
@@ -140,6 +141,10 @@ struct Settings {
   Vector3 base_translation;
   double position_tolerance2;  // m^2
   double rotation_tolerance2;  // (2 sin(angle / 2))^2
+  // Per column the bounds that this solve keeps: those of the layout, or
+  // narrower ones. The start must be inside.
+  const double* lower;
+  const double* upper;
   int max_iterations;
   // Give up as soon as a window of iterations does not halve the error: there
   // are other starts to try.
