@@ -10,6 +10,7 @@
 
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/kinematics/jacobian.h"
+#include "gelenk/kinematics/kinematic_tree.h"
 #include "tests/testing/example_skeletons.h"
 #include "tests/testing/ik_targets.h"
 #include "tests/testing/random_pose.h"
@@ -193,6 +194,18 @@ TEST(SolverAllocationTest, ForwardKinematicsAndJacobian) {
   const int before = allocation_count;
   ForwardKinematics(*skeleton, pose, frames);
   ComputeJacobian(*skeleton, pose, frames, effector, jacobian);
+  EXPECT_EQ(allocation_count - before, 0);
+}
+
+TEST(SolverAllocationTest, KinematicTree) {
+  Random random(5);
+  const auto skeleton = RandomSkeleton(random);
+  const Eigen::VectorXd pose = RandomPose(random, *skeleton);
+  const KinematicTree tree(*skeleton);
+  KinematicFrames frames;
+  tree.Evaluate(pose, frames);
+  const int before = allocation_count;
+  tree.Evaluate(pose, frames);
   EXPECT_EQ(allocation_count - before, 0);
 }
 

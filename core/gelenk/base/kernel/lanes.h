@@ -1,0 +1,124 @@
+// Vectors of doubles, for the sources that are compiled once per level of the
+// instruction set (see gelenk_kernel_level in CMakeLists.txt).
+//
+// Everything here is in an unnamed namespace and always inlined: a function
+// that was emitted with a higher level could be picked by the linker for
+// everybody. For the same reason such sources use nothing of a library.
+#ifndef GELENK_BASE_KERNEL_LANES_H_
+#define GELENK_BASE_KERNEL_LANES_H_
+
+#include <cstdint>
+
+#define GELENK_INLINE inline __attribute__((always_inline))
+
+namespace gelenk::kernel {
+namespace {
+
+// Spelled out: the attribute takes no template parameter.
+template <int kCount>
+struct PackOf;
+template <>
+struct PackOf<2> {
+  typedef double Pack __attribute__((vector_size(16), may_alias));
+  typedef int64_t Mask __attribute__((vector_size(16), may_alias));
+  static GELENK_INLINE Pack Gather(const double* from, const int* at) {
+    return Pack{from[at[0]], from[at[1]]};
+  }
+};
+template <>
+struct PackOf<4> {
+  typedef double Pack __attribute__((vector_size(32), may_alias));
+  typedef int64_t Mask __attribute__((vector_size(32), may_alias));
+  static GELENK_INLINE Pack Gather(const double* from, const int* at) {
+    return Pack{from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
+  }
+};
+template <>
+struct PackOf<8> {
+  typedef double Pack __attribute__((vector_size(64), may_alias));
+  typedef int64_t Mask __attribute__((vector_size(64), may_alias));
+  static GELENK_INLINE Pack Gather(const double* from, const int* at) {
+    return Pack{from[at[0]], from[at[1]], from[at[2]], from[at[3]],
+                from[at[4]], from[at[5]], from[at[6]], from[at[7]]};
+  }
+};
+
+template <int kCount>
+struct Lanes : PackOf<kCount> {
+  using Pack = typename PackOf<kCount>::Pack;
+  using Mask = typename PackOf<kCount>::Mask;
+
+  static GELENK_INLINE Pack Load(const double* from) {
+    return *reinterpret_cast<const Pack*>(from);
+  }
+  static GELENK_INLINE void Store(const Pack& pack, double* to) {
+    *reinterpret_cast<Pack*>(to) = pack;
+  }
+  static GELENK_INLINE Pack All(double value) { return value - Pack{}; }
+  static GELENK_INLINE Pack Min(const Pack& a, const Pack& b) {
+    return a < b ? a : b;
+  }
+  static GELENK_INLINE Pack Max(const Pack& a, const Pack& b) {
+    return a > b ? a : b;
+  }
+  static GELENK_INLINE Pack Abs(const Pack& a) { return Max(a, -a); }
+  static GELENK_INLINE double Sum(const Pack& a) {
+    double sum = 0;
+    for (int i = 0; i < kCount; ++i) sum += a[i];
+    return sum;
+  }
+  static GELENK_INLINE double Largest(const Pack& a) {
+    double largest = a[0];
+    for (int i = 1; i < kCount; ++i) largest = a[i] > largest ? a[i] : largest;
+    return largest;
+  }
+
+  // Sine and cosine of |x| <= kLargestAngle, within 1 ulp: minimax polynomials
+  // of the Cephes library's kind on [-pi/4, pi/4], a three-part reduction.
+  static GELENK_INLINE void SineCosine(const Pack& x, Pack* sine,
+                                       Pack* cosine) {
+    // Adding 1.5 * 2^52 rounds to a whole number, which is then in the low
+    // bits.
+    constexpr double kRounder = 6755399441055744.0;
+    const Pack rounded = x * 6.36619772367581343076e-01 + kRounder;
+    const Pack k = rounded - kRounder;
+    Pack r = x - k * 1.57079632673412561417e+00;
+    r -= k * 6.07710050630396597660e-11;
+    r -= k * 2.02226624879595063154e-21;
+    const Pack z = r * r;
+    const Pack s =
+        r + r * z *
+                (-1.66666666666666324348e-01 +
+                 z * (8.33333333332248946124e-03 +
+                      z * (-1.98412698298579493134e-04 +
+                           z * (2.75573137070700676789e-06 +
+                                z * (-2.50507602534068634195e-08 +
+                                     z * 1.58969099521155010221e-10)))));
+    const Pack c =
+        1.0 - 0.5 * z +
+        z * z *
+            (4.16666666666666019037e-02 +
+             z * (-1.38888888888741095749e-03 +
+                  z * (2.48015872894767294178e-05 +
+                       z * (-2.75573143513906633035e-07 +
+                            z * (2.08757232129817482790e-09 +
+                                 z * -1.13596475577881948265e-11)))));
+    const Mask quadrant = (Mask)rounded;
+    const Mask odd = -(quadrant & 1);
+    const Pack a = odd ? c : s;
+    const Pack b = odd ? s : c;
+    // Bit 1 of the quadrant, and of the next one, moved to the sign.
+    const Mask sine_sign = (quadrant & 2) << 62;
+    const Mask cosine_sign = ((quadrant + 1) & 2) << 62;
+    *sine = (Pack)((Mask)a ^ sine_sign);
+    *cosine = (Pack)((Mask)b ^ cosine_sign);
+  }
+};
+
+// Beyond, the reduction of SineCosine loses digits.
+constexpr double kLargestAngle = 1e5;
+
+}  // namespace
+}  // namespace gelenk::kernel
+
+#endif  // GELENK_BASE_KERNEL_LANES_H_
