@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 #include "convert/geometry.h"
 #include "convert/goal.h"
 #include "convert/pose.h"
@@ -212,7 +211,7 @@ absl::Status StreamSlot::Answer(LevenbergMarquardtSolver& solver,
                    answer->mutable_report());
   answer->set_merged_frame_count(taken_ - 1);
   AddExtras(answer);
-  ToProto(absl::Now() - read_time, answer->mutable_server_duration());
+  ToProto(solved_.end_time - read_time, answer->mutable_server_duration());
   taken_ = 0;
   ++answered_;
   return absl::OkStatus();

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 #include "gelenk/base/violations.h"
+#include "server/clock.h"
 #include "server/rpc/status.h"
 
 namespace gelenk::server {
@@ -58,7 +58,7 @@ void StreamingSolveCall::OnStarted(bool ok) {
     Finish();
     return;
   }
-  last_write_ = absl::Now();
+  last_write_ = CoarseNow();
   responses_[filling_].Renew();
   thread_->AddTicking(this);
   ticking_ = true;
@@ -86,12 +86,15 @@ void StreamingSolveCall::TakeMessage() {
   next_attach_ = 0;
   next_frame_ = 0;
   next_detach_ = 0;
-  read_time_ = absl::Now();
+  read_time_ = Now();
+  burst_begin_ = read_time_;
 }
 
 void StreamingSolveCall::OnWritten(bool ok) {
   writing_ = false;
-  last_write_ = absl::Now();
+  last_write_ = CoarseNow();
+  // What is left of a message goes on in a turn of its own.
+  if (has_message_) burst_begin_ = Now();
   if (!ok) broken_ = true;
   Advance();
 }
@@ -114,7 +117,6 @@ void StreamingSolveCall::OnFinished(bool) {
 void StreamingSolveCall::Advance() {
   if (working_ || finishing_) return;
   if (broken_) has_message_ = false;
-  burst_begin_ = absl::Now();
   if (has_message_ && !Consume(thread_->solver(), false)) {
     ConsumeOnWorker();
     return;
@@ -157,7 +159,8 @@ bool StreamingSolveCall::Consume(LevenbergMarquardtSolver& solver,
     }
     ++next_frame_;
     // Asked after a frame, so that each turn gets one further.
-    time_is_up = absl::Now() - burst_begin_ > kBurst;
+    time_is_up =
+        next_frame_ < request.frames_size() && Now() - burst_begin_ > kBurst;
   }
   for (; next_detach_ < request.detach_size(); ++next_detach_) {
     const int slot = request.detach(next_detach_);
@@ -224,7 +227,7 @@ void StreamingSolveCall::ConsumeOnWorker() {
   // Asked now: the next message may come while the worker is at it.
   const auto work = [this, has_message =
                                has_message_](LevenbergMarquardtSolver& solver) {
-    burst_begin_ = absl::Now();
+    burst_begin_ = Now();
     if (has_message) Consume(solver, true);
     AnswerMerged(solver, true);
     alarm_.Set(thread_->queue(), std::chrono::system_clock::now(), &worked_);
@@ -306,7 +309,7 @@ void StreamingSolveCall::StartRead() {
 
 void StreamingSolveCall::StartWrite() {
   writing_ = true;
-  last_write_ = absl::Now();
+  last_write_ = CoarseNow();
   const v1::StreamingSolveResponse& response = *responses_[filling_].get();
   filling_ = 1 - filling_;
   filled_bytes_ = 0;
@@ -354,7 +357,7 @@ void StreamingSolveCall::CheckSlots() {
 
 void StreamingSolveCall::Close(const absl::Status& why) {
   closing_ = true;
-  closing_since_ = absl::Now();
+  closing_since_ = Now();
   close_status_ = why;
   ToProto(
       why,

@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/time/clock.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/skeleton/joint_check.h"
+#include "server/clock.h"
 
 namespace gelenk::server {
 namespace {
@@ -203,10 +203,11 @@ absl::Status Session::Solve(DriverId driver, LevenbergMarquardtSolver& solver,
   }
   SolverOptions options = options_;
   if (!whole) options.detail = ReportDetail::kBrief;
-  const int64_t begin = absl::GetCurrentTimeNanos();
+  const absl::Time begin = Now();
   solver.Solve(problem_, options, cold_ ? SolveStart::kCold : SolveStart::kWarm,
                positions_, frame.report);
-  frame.solve_duration = absl::Nanoseconds(absl::GetCurrentTimeNanos() - begin);
+  frame.end_time = Now();
+  frame.solve_duration = frame.end_time - begin;
   cold_ = false;
   ++version_;
   frame.positions = positions_;

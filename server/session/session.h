@@ -53,6 +53,7 @@ struct SolvedFrame {
   SolveReport report;
   ReportDetail detail = ReportDetail::kBrief;
   absl::Duration solve_duration;
+  absl::Time end_time;
   // The session holds more than a driver could tell from its last frame and its
   // create request: give it a continuation.
   bool needs_continuation = false;

@@ -28,6 +28,7 @@ const std::string kHealth = "grpc/health/v1/";  // Generated, gRPC's own.
 // What every room of the server may know about the server as a whole.
 const std::string kOptions = "server/options.h";
 const std::string kVersion = "server/version.h";
+const std::string kClock = "server/clock.h";
 
 using Includes = std::vector<std::string>;
 
@@ -63,7 +64,8 @@ const std::vector<Room>& House() {
 
     // session, store: the server's domain, without gRPC and messages. Stores
     // may use what sessions are made of, not the other way round.
-    {"server/session/", {kStd, "Eigen/", "absl/", kCore, "server/session/"},
+    {"server/session/", {kStd, "Eigen/", "absl/", kCore, kClock,
+                         "server/session/"},
                         {kGenerated, kInternal, kClient}},
     {"server/store/",   {kStd, "absl/", kCore, "server/session/",
                          "server/store/"}, {kGenerated, kInternal, kClient}},
@@ -71,7 +73,7 @@ const std::vector<Room>& House() {
     // rpc: convert, call, convert, return.
     {"server/rpc/",     {kStd, "Eigen/", "absl/", kCore, kGenerated,
                          kInternal, kConvert, kGrpc, kHealth,
-                         "google/protobuf/", kOptions, kVersion, "server/rpc/",
+                         "google/protobuf/", kOptions, kVersion, kClock, "server/rpc/",
                          "server/session/", "server/store/"}, {kClient}},
 
     // ops: what a running server needs around the calls.
