@@ -2,9 +2,15 @@
 // size, nothing else. One completion queue per thread, one read and one write
 // under way per stream; what gelenkd is measured against.
 //
-//   bare_echo THREADS ANSWER_BYTES     prints its port, ends on end of input
+// With BUSY_NS it spins that long before each answer, as a server does that has
+// something to work out: messages then arrive, and are batched by the kernel
+// and by gRPC, as they are for such a server.
+//
+//   bare_echo THREADS ANSWER_BYTES BUSY_NS
+//                                  prints its port, ends on end of input
 #include <grpcpp/grpcpp.h>
 
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -17,6 +23,15 @@
 namespace gelenk::benchmarks {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+void Spin(std::chrono::nanoseconds duration) {
+  if (duration.count() == 0) return;
+  const Clock::time_point end = Clock::now() + duration;
+  while (Clock::now() < end) {
+  }
+}
+
 class Tag {
  public:
   virtual ~Tag() = default;
@@ -26,8 +41,8 @@ class Tag {
 class EchoStream {
  public:
   EchoStream(Echo::AsyncService* service, grpc::ServerCompletionQueue* queue,
-             const std::string& answer)
-      : service_(service), queue_(queue) {
+             const std::string& answer, std::chrono::nanoseconds busy)
+      : service_(service), queue_(queue), busy_(busy) {
     answer_.set_bytes(answer);
     service_->RequestStream(&context_, &stream_, queue_, queue_, &started_);
   }
@@ -46,7 +61,7 @@ class EchoStream {
 
   void OnStarted(bool ok) {
     if (!ok) return;
-    new EchoStream(service_, queue_, answer_.bytes());
+    new EchoStream(service_, queue_, answer_.bytes(), busy_);
     stream_.Read(&request_, &read_);
   }
   void OnRead(bool ok) {
@@ -63,12 +78,14 @@ class EchoStream {
     if (!has_request_ || writing_) return;
     has_request_ = false;
     writing_ = true;
+    Spin(busy_);
     stream_.Write(answer_, &written_);
     stream_.Read(&request_, &read_);
   }
 
   Echo::AsyncService* service_;
   grpc::ServerCompletionQueue* queue_;
+  const std::chrono::nanoseconds busy_;
   grpc::ServerContext context_;
   grpc::ServerAsyncReaderWriter<Payload, Payload> stream_{&context_};
   Payload request_;
@@ -80,7 +97,7 @@ class EchoStream {
   Operation written_{this, &EchoStream::OnWritten};
 };
 
-int Serve(int threads, size_t answer_bytes) {
+int Serve(int threads, size_t answer_bytes, std::chrono::nanoseconds busy) {
   const std::string answer(answer_bytes, 'x');
   grpc::ServerBuilder builder;
   int port = 0;
@@ -95,7 +112,7 @@ int Serve(int threads, size_t answer_bytes) {
   const std::unique_ptr<grpc::Server> server = builder.BuildAndStart();
   if (server == nullptr) return 1;
   for (const auto& queue : queues) {
-    new EchoStream(&service, queue.get(), answer);
+    new EchoStream(&service, queue.get(), answer, busy);
     std::thread([queue = queue.get()] {
       void* tag;
       bool ok;
@@ -113,7 +130,8 @@ int Serve(int threads, size_t answer_bytes) {
 }  // namespace gelenk::benchmarks
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 2;
-  return gelenk::benchmarks::Serve(std::atoi(argv[1]),
-                                   std::strtoul(argv[2], nullptr, 10));
+  if (argc != 4) return 2;
+  return gelenk::benchmarks::Serve(
+      std::atoi(argv[1]), std::strtoul(argv[2], nullptr, 10),
+      std::chrono::nanoseconds(std::strtol(argv[3], nullptr, 10)));
 }
