@@ -71,6 +71,10 @@ void KindToProto(const PoseGoal& goal, v1::Goal* proto) {
   if (!IsWhole(goal.axes)) MaskToProto(goal.axes, out->mutable_axes());
 }
 
+// The kinds whose conversion is still to be written.
+template <class Kind>
+void KindToProto(const Kind&, v1::Goal*) {}
+
 absl::Status NoKind(const v1::Goal& proto) {
   Violations violations;
   violations.Add("kind",

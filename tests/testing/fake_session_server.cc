@@ -52,6 +52,13 @@ double Digest(const GoalTarget& target) {
     double operator()(const RigidTransform& pose) const {
       return (*this)(pose.translation) + 13 * (*this)(pose.rotation);
     }
+    double operator()(const Plane& plane) const {
+      return (*this)(plane.world_normal) + 13 * plane.offset_m;
+    }
+    double operator()(const Eigen::VectorXd& positions) const {
+      return positions.sum();
+    }
+    double operator()(std::monostate) const { return 0; }
   };
   return std::visit(Sum(), target);
 }

@@ -1,11 +1,10 @@
 #include "gelenk/ik/goal.h"
 
-#include <cmath>
+#include <type_traits>
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "gelenk/base/violations.h"
-#include "gelenk/math/rotation.h"
+#include "gelenk/ik/goals/goal_check.h"
 #include "gelenk/skeleton/joint_check.h"
 
 namespace gelenk {
@@ -18,77 +17,38 @@ struct Overloaded : Cases... {
 template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
-void CheckPoint(absl::string_view field, const Eigen::Vector3d& point,
-                Violations& violations) {
-  if (point.allFinite()) return;
-  violations.Add(field, absl::StrFormat("want finite numbers, got (%g, %g, %g)",
-                                        point.x(), point.y(), point.z()));
-}
-
-void CheckRotation(absl::string_view field, Eigen::Quaterniond& rotation,
-                   Violations& violations) {
-  if (NormalizeNearUnit(rotation.coeffs().data())) return;
-  violations.Add(
-      field,
-      absl::StrFormat("want a unit quaternion, got (%g, %g, %g, %g)",
-                      rotation.x(), rotation.y(), rotation.z(), rotation.w()));
-}
-
-void CheckScale(absl::string_view field, double value, Violations& violations) {
-  if (std::isfinite(value) && value >= 0) return;
-  violations.Add(field, absl::StrCat("want a finite number >= 0, got ", value));
-}
+template <class Kind>
+using TargetType = std::decay_t<decltype(TargetOf(std::declval<Kind>()))>;
 
 }  // namespace
 
 absl::string_view EffectorId(const GoalKind& kind) {
-  return std::visit(
-      [](const auto& k) -> absl::string_view { return k.end_effector_id; },
-      kind);
+  return std::visit([](const auto& k) { return EffectorId(k); }, kind);
 }
 
 absl::string_view GoalKindName(const GoalKind& kind) {
-  return std::visit(Overloaded{[](const PositionGoal&) { return "position"; },
-                               [](const RotationGoal&) { return "rotation"; },
-                               [](const PoseGoal&) { return "pose"; }},
-                    kind);
+  return std::visit([](const auto& k) { return KindName(k); }, kind);
 }
 
 GoalTarget TargetOf(const GoalKind& kind) {
-  return std::visit(
-      Overloaded{
-          [](const PositionGoal& k) { return GoalTarget(k.world_position); },
-          [](const RotationGoal& k) { return GoalTarget(k.world_rotation); },
-          [](const PoseGoal& k) { return GoalTarget(k.world_pose); }},
-      kind);
+  return std::visit([](const auto& k) { return GoalTarget(TargetOf(k)); },
+                    kind);
 }
 
 bool Fits(const GoalKind& kind, const GoalTarget& target) {
   return std::visit(
-      Overloaded{[&](const PositionGoal&) {
-                   return std::holds_alternative<Eigen::Vector3d>(target);
-                 },
-                 [&](const RotationGoal&) {
-                   return std::holds_alternative<Eigen::Quaterniond>(target);
-                 },
-                 [&](const PoseGoal&) {
-                   return std::holds_alternative<RigidTransform>(target);
-                 }},
+      [&](const auto& k) {
+        using Target = TargetType<decltype(k)>;
+        return !std::is_same_v<Target, std::monostate> &&
+               std::holds_alternative<Target>(target);
+      },
       kind);
 }
 
 void Retarget(GoalKind& kind, const GoalTarget& target) {
-  std::visit(Overloaded{[&](PositionGoal& k) {
-                          k.world_position = std::get<Eigen::Vector3d>(target);
-                        },
-                        [&](RotationGoal& k) {
-                          k.world_rotation =
-                              std::get<Eigen::Quaterniond>(target);
-                        },
-                        [&](PoseGoal& k) {
-                          k.world_pose = std::get<RigidTransform>(target);
-                        }},
-             kind);
+  std::visit(
+      [&](auto& k) { Retarget(k, std::get<TargetType<decltype(k)>>(target)); },
+      kind);
 }
 
 absl::Status CheckAndNormalize(GoalTarget& target) {
@@ -104,7 +64,13 @@ absl::Status CheckAndNormalize(GoalTarget& target) {
                                      violations);
                           CheckRotation("world_pose.rotation", pose.rotation,
                                         violations);
-                        }},
+                        },
+                        [&](Plane& plane) {
+                          Violations of_plane;
+                          CheckAndNormalize(plane, of_plane);
+                          violations.AddStatus("plane", of_plane.ToStatus());
+                        },
+                        [](const Eigen::VectorXd&) {}, [](std::monostate) {}},
              target);
   return violations.ToStatus();
 }
@@ -112,14 +78,23 @@ absl::Status CheckAndNormalize(GoalTarget& target) {
 absl::Status CheckAndNormalize(Goal& goal) {
   Violations violations;
   CheckId("goal_id", goal.id, violations);
-  CheckScale("weight", goal.weight, violations);
-  GoalTarget target = TargetOf(goal.kind);
-  violations.AddStatus(GoalKindName(goal.kind), CheckAndNormalize(target));
-  Retarget(goal.kind, target);
-  if (const PoseGoal* pose = std::get_if<PoseGoal>(&goal.kind)) {
-    CheckScale("pose.rotation_scale_m_per_rad", pose->rotation_scale_m_per_rad,
-               violations);
+  CheckNotNegative("weight", goal.weight, violations);
+  if (goal.priority < 0 || goal.priority >= kMaxPriorities) {
+    violations.Add("priority",
+                   absl::StrFormat("want 0 to %d, got %d", kMaxPriorities - 1,
+                                   goal.priority));
   }
+  Violations of_kind;
+  std::visit([&](auto& kind) { CheckAndNormalize(kind, of_kind); }, goal.kind);
+  violations.AddStatus(GoalKindName(goal.kind), of_kind.ToStatus());
+  return violations.ToStatus();
+}
+
+absl::Status CheckOn(const Skeleton& skeleton, Goal& goal) {
+  Violations of_kind;
+  std::visit([&](auto& kind) { CheckOn(skeleton, kind, of_kind); }, goal.kind);
+  Violations violations;
+  violations.AddStatus(GoalKindName(goal.kind), of_kind.ToStatus());
   return violations.ToStatus();
 }
 

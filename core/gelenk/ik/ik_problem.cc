@@ -9,9 +9,22 @@
 #include "absl/strings/str_format.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/skeleton/joint_check.h"
+#include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
 namespace {
+
+// The kinds that the solvers know so far.
+bool IsSolved(const Goal& goal) {
+  const GoalKind& kind = goal.kind;
+  if (const auto* rotation = std::get_if<RotationGoal>(&kind)) {
+    return rotation->axes.count() == 3;
+  }
+  if (const auto* pose = std::get_if<PoseGoal>(&kind)) {
+    return pose->rotation_axes.count() == 3;
+  }
+  return std::holds_alternative<PositionGoal>(kind);
+}
 
 bool HasTranslation(const GoalKind& kind) {
   return !std::holds_alternative<RotationGoal>(kind);
@@ -61,19 +74,19 @@ absl::StatusOr<IkProblem> IkProblem::Create(
       violations.Add(absl::StrCat(field, ".goal_id"),
                      absl::StrCat("duplicate ", QuotedId(goal.id)));
     }
-    const absl::string_view effector_id = EffectorId(goal.kind);
-    const std::optional<EffectorFrame> effector =
-        skeleton->FindEffector(effector_id);
-    if (!effector) {
-      violations.Add(
-          absl::StrCat(field, ".", GoalKindName(goal.kind), ".end_effector_id"),
-          absl::StrCat("no end effector or joint ", QuotedId(effector_id)));
-      continue;
-    }
-    tasks.push_back(
-        {*effector, HasTranslation(goal.kind), HasRotation(goal.kind)});
+    const absl::Status on_skeleton = CheckOn(*skeleton, goal);
+    violations.AddStatus(field, on_skeleton);
+    if (!on_skeleton.ok() || !IsSolved(goal)) continue;
+    tasks.push_back({*skeleton->FindEffector(EffectorId(goal.kind)),
+                     HasTranslation(goal.kind), HasRotation(goal.kind)});
   }
   if (!violations.empty()) return violations.ToStatus();
+  for (const Goal& goal : goals) {
+    if (IsSolved(goal) && goal.priority == goals[0].priority) continue;
+    return absl::UnimplementedError(
+        absl::StrCat("goals: no solver yet for ", GoalKindName(goal.kind),
+                     " goals of priority ", goal.priority));
+  }
   std::shared_ptr<const SparseTree> tree =
       trees ? trees(tasks) : std::make_shared<SparseTree>(*skeleton, tasks);
   return IkProblem(std::move(skeleton), std::move(goals), std::move(tree));
@@ -108,7 +121,13 @@ absl::Status IkProblem::CheckTarget(int goal_index, GoalTarget& target) const {
                                 " goal ", QuotedId(goal.id)));
     return violations.ToStatus();
   }
-  return CheckAndNormalize(target);
+  if (absl::Status status = CheckAndNormalize(target); !status.ok()) {
+    return status;
+  }
+  if (auto* positions = std::get_if<Eigen::VectorXd>(&target)) {
+    return CheckPositions(*skeleton_, *positions);
+  }
+  return absl::OkStatus();
 }
 
 void IkProblem::SetTarget(int goal_index, const GoalTarget& target) {
@@ -165,6 +184,10 @@ size_t IkProblem::ByteSize() const {
                  goals_.capacity() * sizeof(Goal);
   for (const Goal& goal : goals_) {
     bytes += goal.id.capacity() + EffectorId(goal.kind).size();
+    if (const auto* posture = std::get_if<PostureGoal>(&goal.kind)) {
+      bytes += sizeof(double) *
+               (posture->positions.size() + posture->joint_weights.capacity());
+    }
   }
   return bytes;
 }

@@ -29,8 +29,9 @@ using TreeSource = std::function<std::shared_ptr<const SparseTree>(
 class IkProblem {
  public:
   // INVALID_ARGUMENT listing every bad goal: malformed (see CheckAndNormalize),
-  // unknown effector, duplicate id, too many. No goals is fine: solving leaves
-  // the pose as it is. Without `trees` the problem makes a tree of its own.
+  // not of this skeleton (see CheckOn), duplicate id, too many. UNIMPLEMENTED
+  // for kinds that no solver knows yet. No goals is fine: solving leaves the
+  // pose as it is. Without `trees` the problem makes a tree of its own.
   static absl::StatusOr<IkProblem> Create(
       std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
       const TreeSource& trees = nullptr);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "tests/testing/example_bodies.h"
 #include "tests/testing/example_skeletons.h"
 #include "tests/testing/ik_targets.h"
 #include "tests/testing/violation_lines.h"
@@ -16,6 +17,7 @@ namespace gelenk {
 namespace {
 
 using ::gelenk::testing::PandaArm;
+using ::gelenk::testing::PersonWithFingers;
 using ::gelenk::testing::PoseGoalFor;
 using ::gelenk::testing::PositionGoalFor;
 using ::gelenk::testing::RotationGoalFor;
@@ -63,6 +65,70 @@ TEST(IkProblemTest, ListsEveryBadGoal) {
                   "goals[2].goal_id: duplicate \"j4\"",
                   "goals[2].pose.end_effector_id: no end effector or joint "
                   "\"tail\\n\""));
+}
+
+std::vector<std::string> LinesOf(const GoalKind& kind) {
+  return Lines({{"goal", 1, kind}});
+}
+
+TEST(IkProblemTest, EveryKindWantsItsEffector) {
+  const auto line = [](absl::string_view kind) {
+    return absl::StrCat("goals[0].", kind,
+                        ".end_effector_id: no end effector or joint \"tail\"");
+  };
+  AimGoal aim;
+  aim.end_effector_id = "tail";
+  EXPECT_THAT(LinesOf(aim), ElementsAre(line("aim")));
+  EXPECT_THAT(LinesOf(HalfSpaceGoal{"tail", {0, 1, 0}, 0}),
+              ElementsAre(line("half_space")));
+  EXPECT_THAT(LinesOf(PlantGoal{"tail", 1}), ElementsAre(line("plant")));
+  EXPECT_THAT(LinesOf(RelativeGoal{"nose", "tail", {}, 1}),
+              ElementsAre("goals[0].relative.reference_end_effector_id: no end "
+                          "effector or joint \"nose\"",
+                          line("relative")));
+}
+
+TEST(IkProblemTest, LimbsGoFromRootToTip) {
+  EXPECT_THAT(LinesOf(PoleGoal{"hip", "tip", "j3", {0, 0, 1}}),
+              ElementsAre("goals[0].pole.root_joint_id: no joint \"hip\"",
+                          "goals[0].pole.mid_joint_id: no joint \"tip\""));
+  EXPECT_THAT(LinesOf(PoleGoal{"j3", "j1", "j5", {0, 0, 1}}),
+              ElementsAre("goals[0].pole.mid_joint_id: \"j1\" is not below "
+                          "\"j3\""));
+  EXPECT_THAT(LinesOf(PoleGoal{"j1", "j1", "j1", {0, 0, 1}}),
+              ElementsAre("goals[0].pole.mid_joint_id: \"j1\" is not below "
+                          "\"j1\"",
+                          "goals[0].pole.tip_joint_id: \"j1\" is not below "
+                          "\"j1\""));
+}
+
+TEST(IkProblemTest, LimbsGoDownOneBranch) {
+  const auto person = PersonWithFingers();
+  const auto lines = [&](const PoleGoal& pole) {
+    return ViolationLines(
+        IkProblem::Create(person, {{"goal", 1, pole}}).status());
+  };
+  std::vector<std::string> ids;
+  for (const Joint& joint : person->joints()) ids.push_back(joint.id);
+  const int left = person->FindEffector("left_palm")->joint;
+  const int right = person->FindEffector("right_palm")->joint;
+  const int root = 0;
+  EXPECT_THAT(
+      lines({ids[root], ids[left], ids[right], {0, 0, 1}}),
+      ElementsAre(absl::StrCat("goals[0].pole.tip_joint_id: \"", ids[right],
+                               "\" is not below \"", ids[left], "\"")));
+}
+
+TEST(IkProblemTest, PosturesHaveTheSizeOfTheSkeleton) {
+  EXPECT_THAT(LinesOf(PostureGoal{Eigen::VectorXd::Zero(6), {1, 1, 1}}),
+              ElementsAre("goals[0].posture.positions: want 7 numbers, got 6",
+                          "goals[0].posture.joint_weights: want 7 numbers or "
+                          "none, got 3"));
+  Eigen::VectorXd positions = Eigen::VectorXd::Zero(7);
+  positions[2] = NAN;
+  EXPECT_THAT(LinesOf(PostureGoal{positions, {}}),
+              ElementsAre("goals[0].posture.positions[2]: want a finite number,"
+                          " got nan"));
 }
 
 TEST(IkProblemTest, LongIdsMakeShortMessages) {

@@ -1,0 +1,38 @@
+// Point an axis of an end effector at a point: eyes, a camera, a lamp. World
+// frame, m.
+#ifndef GELENK_IK_GOALS_AIM_GOAL_H_
+#define GELENK_IK_GOALS_AIM_GOAL_H_
+
+#include <Eigen/Core>
+#include <string>
+
+#include "absl/strings/string_view.h"
+#include "gelenk/base/violations.h"
+#include "gelenk/skeleton/skeleton.h"
+
+namespace gelenk {
+
+struct AimGoal {
+  std::string end_effector_id;
+  // End effector frame; any length but zero, normalised.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d world_point = Eigen::Vector3d::Zero();
+};
+
+inline absl::string_view KindName(const AimGoal&) { return "aim"; }
+inline absl::string_view EffectorId(const AimGoal& goal) {
+  return goal.end_effector_id;
+}
+inline const Eigen::Vector3d& TargetOf(const AimGoal& goal) {
+  return goal.world_point;
+}
+inline void Retarget(AimGoal& goal, const Eigen::Vector3d& target) {
+  goal.world_point = target;
+}
+
+void CheckAndNormalize(AimGoal& goal, Violations& violations);
+void CheckOn(const Skeleton& skeleton, AimGoal& goal, Violations& violations);
+
+}  // namespace gelenk
+
+#endif  // GELENK_IK_GOALS_AIM_GOAL_H_
