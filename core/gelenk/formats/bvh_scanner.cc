@@ -1,6 +1,5 @@
 #include "gelenk/formats/bvh_scanner.h"
 
-#include <charconv>
 #include <cmath>
 #include <system_error>
 
@@ -8,6 +7,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "gelenk/formats/decimal_number.h"
 
 namespace gelenk {
 namespace {
@@ -22,18 +22,6 @@ bool IsBlank(char c) {
 bool EndsLine(char c) { return c == '\n' || c == '\r'; }
 
 bool IsBrace(char c) { return c == '{' || c == '}'; }
-
-// Reads all of `token`; false when it is anything but one number.
-template <typename Number>
-bool Parse(absl::string_view token, Number& number, std::errc& error) {
-  const char* begin = token.data();
-  const char* end = begin + token.size();
-  // from_chars takes no plus sign.
-  if (token.size() > 1 && token[0] == '+' && token[1] != '-') ++begin;
-  const std::from_chars_result result = std::from_chars(begin, end, number);
-  error = result.ec;
-  return error != std::errc::invalid_argument && result.ptr == end;
-}
 
 }  // namespace
 
@@ -100,7 +88,7 @@ absl::StatusOr<double> BvhScanner::TakeNumber() {
   const absl::string_view token = Peek();
   double number = 0;
   std::errc error{};
-  if (!Parse(token, number, error)) return Expected("a number");
+  if (!ParseDecimal(token, number, error)) return Expected("a number");
   if (error != std::errc{} || !(std::abs(number) <= kMaxMagnitude)) {
     return Expected("a finite number of at most 1e9");
   }
@@ -112,7 +100,7 @@ absl::StatusOr<int64_t> BvhScanner::TakeCount() {
   const absl::string_view token = Peek();
   int64_t count = 0;
   std::errc error{};
-  if (!Parse(token, count, error) || error != std::errc{} || count < 0) {
+  if (!ParseDecimal(token, count, error) || error != std::errc{} || count < 0) {
     return Expected("a whole number >= 0");
   }
   at_ += token.size();
