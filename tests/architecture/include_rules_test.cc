@@ -19,6 +19,7 @@ using ::testing::IsEmpty;
 // What can be included, by the name used in the architecture.
 const std::string kStd = "<";
 const std::string kCore = "gelenk/";
+const std::string kImport = "gelenk/import/";  // A library of its own.
 const std::string kGenerated = "gelenk/v1/";
 const std::string kInternal = "gelenk/internal/";  // Messages of our own.
 const std::string kClient = "gelenk/client/";
@@ -56,19 +57,27 @@ const Includes kNotInCore = {
 const std::vector<Room>& House() {
   static const std::vector<Room> house = {
     // core: the kinematics library, usable without the service.
-    {"core/",           {kStd, "Eigen/", "absl/", kCore}, kNotInCore},
+    {"core/",           {kStd, "Eigen/", "absl/", kCore},
+                        kNotInCore + Includes{kImport}},
+
+    // import: what core reads by way of an XML or JSON parser.
+    {"core/gelenk/import/",
+                        {kStd, "Eigen/", "absl/", kCore, "tinyxml2.h",
+                         "nlohmann/"}, kNotInCore},
 
     // convert: the only code that knows both messages and core types.
     {"proto/convert/",  {kStd, "Eigen/", "absl/", kCore, kGenerated,
-                         kInternal, kConvert, "google/protobuf/"}, {kClient}},
+                         kInternal, kConvert, "google/protobuf/"},
+                        {kClient, kImport}},
 
     // session, store: the server's domain, without gRPC and messages. Stores
     // may use what sessions are made of, not the other way round.
     {"server/session/", {kStd, "Eigen/", "absl/", kCore, kClock,
                          "server/session/"},
-                        {kGenerated, kInternal, kClient}},
+                        {kGenerated, kInternal, kClient, kImport}},
     {"server/store/",   {kStd, "absl/", kCore, "server/session/",
-                         "server/store/"}, {kGenerated, kInternal, kClient}},
+                         "server/store/"},
+                        {kGenerated, kInternal, kClient, kImport}},
 
     // rpc: convert, call, convert, return.
     {"server/rpc/",     {kStd, "Eigen/", "absl/", kCore, kGenerated,
@@ -175,6 +184,26 @@ TEST_F(PlantedTreeTest, CoreHasNoMessageNoThreadNoClock) {
           "core/gelenk/ik/goal.cc:3: core/ must not include <chrono>",
           "core/gelenk/ik/goal.cc:5: core/ must not include "
           "absl/time/clock.h"));
+}
+
+TEST_F(PlantedTreeTest, OnlyTheImportKnowsParsers) {
+  Plant("core/gelenk/import/urdf.cc",
+        "#include <tinyxml2.h>\n#include <nlohmann/json.hpp>\n"
+        "#include \"gelenk/import/urdf.h\"\n"
+        "#include <fstream>\n");
+  Plant("core/gelenk/formats/urdf.cc",
+        "#include <tinyxml2.h>\n#include \"gelenk/import/urdf.h\"\n");
+  Plant("server/session/session.h", "#include \"gelenk/import/urdf.h\"\n");
+  EXPECT_THAT(
+      Violations(),
+      ElementsAre(
+          "core/gelenk/formats/urdf.cc:1: core/ must not include tinyxml2.h",
+          "core/gelenk/formats/urdf.cc:2: core/ must not include "
+          "gelenk/import/urdf.h",
+          "core/gelenk/import/urdf.cc:4: core/gelenk/import/ must not include "
+          "<fstream>",
+          "server/session/session.h:1: server/session/ must not include "
+          "gelenk/import/urdf.h"));
 }
 
 TEST_F(PlantedTreeTest, CommentedIncludeIsNone) {
