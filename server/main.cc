@@ -8,6 +8,7 @@
 
 #include "absl/time/time.h"
 #include "server/ops/command_line.h"
+#include "server/ops/health_check.h"
 #include "server/ops/logging.h"
 #include "server/ops/stop_signal.h"
 #include "server/server.h"
@@ -15,6 +16,17 @@
 
 namespace gelenk::server {
 namespace {
+
+// A container's health check has no more time than a few seconds.
+constexpr absl::Duration kHealthCheckPatience = absl::Seconds(3);
+
+int RunHealthCheck(const CommandLine& command_line) {
+  const absl::Status status = CheckHealth(
+      LocalTarget(command_line.server.listen), kHealthCheckPatience);
+  if (status.ok()) return 0;
+  spdlog::error("not healthy: {}", std::string(status.message()));
+  return 1;
+}
 
 int Run(const CommandLine& command_line) {
   // Before the first thread, so that none of them takes the signal.
@@ -55,5 +67,7 @@ int main(int argc, char** argv) {
     return *exit_code;
   }
   gelenk::server::StartLogging(command_line.log_level);
-  return gelenk::server::Run(command_line);
+  return command_line.health_check
+             ? gelenk::server::RunHealthCheck(command_line)
+             : gelenk::server::Run(command_line);
 }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "absl/strings/ascii.h"
 #include "server/version.h"
 
 namespace gelenk::server {
@@ -55,12 +56,26 @@ void AddLimits(CLI::App& app, Limits& limits) {
               "Life of an idle session that asks for none");
 }
 
+// --max-sessions becomes GELENKD_MAX_SESSIONS.
+void NameEnvironment(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (!option->get_configurable()) continue;
+    std::string name = "GELENKD_" + option->get_lnames().front();
+    for (char& c : name) c = c == '-' ? '_' : absl::ascii_toupper(c);
+    option->envname(name);
+  }
+}
+
 }  // namespace
 
 std::optional<int> ParseCommandLine(int argc, char** argv,
                                     CommandLine& command_line) {
   CLI::App app("gelenkd: inverse kinematics as a service", "gelenkd");
   app.set_version_flag("--version", Version() + "\n" + BuildId());
+  app.add_flag("--health-check", command_line.health_check,
+               "Ask the server at --listen how it is, and exit with 0 if it "
+               "serves, else with 1")
+      ->configurable(false);
   ServerOptions& server = command_line.server;
   app.add_option("--listen", server.listen,
                  "Address and port; port 0 picks a free one")
@@ -96,6 +111,10 @@ std::optional<int> ParseCommandLine(int argc, char** argv,
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
       ->capture_default_str();
   AddLimits(app, server.limits);
+  NameEnvironment(app);
+  app.footer(
+      "Every option is also read from the environment, --max-sessions from "
+      "GELENKD_MAX_SESSIONS; the command line is stronger.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

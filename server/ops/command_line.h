@@ -1,4 +1,6 @@
-// The flags of gelenkd.
+// The flags of gelenkd. Each that has a value or switches something on can also
+// be given by the environment: GELENKD_MAX_SESSIONS for --max-sessions. A flag
+// is stronger.
 #ifndef GELENK_SERVER_OPS_COMMAND_LINE_H_
 #define GELENK_SERVER_OPS_COMMAND_LINE_H_
 
@@ -11,6 +13,9 @@
 namespace gelenk::server {
 
 struct CommandLine {
+  // Ask the server that listens at server.listen how it is, instead of being
+  // one.
+  bool health_check = false;
   ServerOptions server;
   // Receives the port once the server listens.
   std::string port_file;

@@ -87,7 +87,7 @@ const std::vector<Room>& House() {
 
     // ops: what a running server needs around the calls.
     {"server/ops/",     Includes{kStd, "absl/", kCore, kGenerated, kGrpc,
-                         "CLI/", "spdlog/", "nlohmann/", kOptions, kVersion,
+                         kHealth, "CLI/", "spdlog/", "nlohmann/", kOptions, kVersion,
                          "server/ops/", "server/session/",
                          "server/store/"} + kPosix,
                         {kInternal, kClient}},

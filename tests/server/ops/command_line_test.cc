@@ -3,11 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "absl/strings/ascii.h"
 
 namespace gelenk::server {
 namespace {
@@ -136,6 +141,53 @@ TEST_P(FlagTest, GivesItsValue) {
   }
 }
 
+// A variable of the environment, for as long as this object lives.
+class Variable {
+ public:
+  Variable(std::string name, const std::string& value)
+      : name_(std::move(name)) {
+    setenv(name_.c_str(), value.c_str(), /*overwrite=*/1);
+  }
+  ~Variable() { unsetenv(name_.c_str()); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const std::string name_;
+};
+
+// max-sessions: GELENKD_MAX_SESSIONS
+std::string VariableName(const Flag& flag) {
+  std::string name = absl::AsciiStrToUpper("gelenkd_" + flag.name);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+TEST_P(FlagTest, IsReadFromTheEnvironment) {
+  const Flag& flag = GetParam();
+  const Variable variable(VariableName(flag), flag.value);
+  const Parsed parsed = Parse({});
+  EXPECT_EQ(parsed.exit_code, std::nullopt) << parsed.err;
+  EXPECT_EQ(flag.read(parsed.command_line), flag.value);
+}
+
+TEST_P(FlagTest, IsStrongerThanTheEnvironment) {
+  const Flag& flag = GetParam();
+  const Variable variable(VariableName(flag), "0");
+  const Parsed parsed = Parse({"--" + flag.name, flag.value});
+  EXPECT_EQ(parsed.exit_code, std::nullopt) << parsed.err;
+  EXPECT_EQ(flag.read(parsed.command_line), flag.value);
+}
+
+TEST_P(FlagTest, RefusesABadValueOfTheEnvironment) {
+  const Flag& flag = GetParam();
+  if (flag.bad_value.empty()) return;  // any text will do
+  const Variable variable(VariableName(flag), flag.bad_value);
+  const Parsed parsed = Parse({});
+  EXPECT_EQ(parsed.exit_code, 2);
+  EXPECT_THAT(parsed.err, HasSubstr("--" + flag.name));
+}
+
 TEST_P(FlagTest, RefusesABadValue) {
   const Flag& flag = GetParam();
   if (flag.bad_value.empty()) return;  // any text will do
@@ -152,6 +204,21 @@ TEST(CommandLineTest, SwitchesAreOffUnlessNamed) {
   EXPECT_TRUE(Parse({"--insecure"}).command_line.server.insecure);
   EXPECT_TRUE(Parse({"--reflection"}).command_line.server.reflection);
   EXPECT_FALSE(Parse({}).command_line.server.reflection);
+}
+
+TEST(CommandLineTest, TheEnvironmentThrowsSwitches) {
+  const Variable insecure("GELENKD_INSECURE", "true");
+  const Variable reflection("GELENKD_REFLECTION", "false");
+  const Parsed parsed = Parse({});
+  EXPECT_TRUE(parsed.command_line.server.insecure);
+  EXPECT_FALSE(parsed.command_line.server.reflection);
+}
+
+// Else a variable meant for a container would keep its server from starting.
+TEST(CommandLineTest, OnlyTheCommandLineAsksForAHealthCheck) {
+  const Variable variable("GELENKD_HEALTH_CHECK", "true");
+  EXPECT_FALSE(Parse({}).command_line.health_check);
+  EXPECT_TRUE(Parse({"--health-check"}).command_line.health_check);
 }
 
 TEST(CommandLineTest, RefusesWhatItDoesNotKnow) {
