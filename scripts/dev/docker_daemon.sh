@@ -17,7 +17,8 @@ use_docker() {
     say "using the running docker daemon"
     return
   fi
-  need_packages "a private docker daemon" docker.io iptables mmdebstrap
+  need_packages "a private docker daemon" docker.io iptables mmdebstrap \
+    procps
   start_docker
   # shellcheck disable=SC2034
   docker_build=(env DOCKER_BUILDKIT=0 docker build --network host)
