@@ -100,6 +100,7 @@ class FigureMaker {
 
   std::vector<Figure::Line> Project(const std::vector<Bone>& bones) const {
     std::vector<Figure::Line> lines;
+    lines.reserve(bones.size());
     for (const Bone& bone : bones) {
       lines.push_back(
           {Project(bone.world_from), Project(bone.world_to), bone.half});

@@ -72,6 +72,7 @@ std::vector<Point> Curve(const std::vector<double>& values,
     column = std::max(column, values[i]);
   }
   std::vector<Point> points;
+  points.reserve(columns);
   for (int i = 0; i < columns; ++i) {
     points.emplace_back(scale.box.left + scale.box.width * (i + 0.5) / columns,
                         scale.Y(worst[i]));

@@ -78,7 +78,7 @@ class Sender {
     const absl::Time start = absl::Now();
     for (int frame = 0; frame < playback_.frame_count() && !stopped_; ++frame) {
       absl::SleepFor(start + frame * frame_interval_ - absl::Now());
-      const absl::Status status = stream_.Send(writer.Write(frame));
+      absl::Status status = stream_.Send(writer.Write(frame));
       if (status.ok()) continue;
       failed_ = true;
       return status;

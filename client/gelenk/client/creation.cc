@@ -28,12 +28,12 @@ absl::Status Create(const Creation& creation, Connection& connection,
   options.affinity_key = creation.affinity_key;
   options.cancellation = cancellation;
   if (creation.replaces) {
-    const absl::Status deleted =
+    absl::Status deleted =
         Delete(creation.session.session_id(), connection, options);
     if (!deleted.ok()) return deleted;
   }
   if (creation.skeleton.has_value()) {
-    const absl::Status created =
+    absl::Status created =
         connection
             .Call(&v1::KinematicsService::Stub::CreateSkeleton,
                   *creation.skeleton, options)

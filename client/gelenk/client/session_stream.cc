@@ -123,7 +123,7 @@ absl::Status SessionStream::Push(Lock& lock, v1::TargetFrame frame, bool number,
     frame.set_sequence_number(slot->last_sequence_number() + 1);
     *sequence_number = frame.sequence_number();
   }
-  const absl::Status status = slot->CheckNumber(frame.sequence_number());
+  absl::Status status = slot->CheckNumber(frame.sequence_number());
   if (!status.ok()) return status;
   slot->Push(std::move(frame), Now(), &slots_.statistics());
   Pump();
@@ -213,7 +213,7 @@ void SessionStream::Run() {
 absl::Status SessionStream::RunAttempt(Lock& lock) {
   if (IsComplete()) return absl::OkStatus();
   slots_.Rewind();
-  const absl::Status created = CreateAbsent(lock);
+  absl::Status created = CreateAbsent(lock);
   if (!created.ok()) return created;
   return RunCall(lock);
 }
@@ -277,7 +277,7 @@ absl::Status SessionStream::RunCall(Lock& lock) {
     }
     run_event_.wait_until(lock, CallDeadline());
   }
-  const absl::Status status = StatusOfCall();
+  absl::Status status = StatusOfCall();
   call_.reset();
   return status;
 }

@@ -1,6 +1,7 @@
 #include "gelenk/client/stream_statistics.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gelenk::client {
 
@@ -18,7 +19,7 @@ absl::Duration RoundTrips::Quantile(double fraction) const {
   std::vector<absl::Duration> sorted = samples_;
   const double last = static_cast<double>(sorted.size() - 1);
   const auto rank =
-      static_cast<size_t>(std::clamp(fraction, 0.0, 1.0) * last + 0.5);
+      static_cast<size_t>(std::lround(std::clamp(fraction, 0.0, 1.0) * last));
   std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
   return sorted[rank];
 }
