@@ -21,7 +21,7 @@ lint_buf() {
 lint_shell() {
   need_command "lint" shellcheck shellcheck
   shellcheck --shell=bash --external-sources --source-path=SCRIPTDIR/../.. \
-    dev .ci/run scripts/dev/*.sh
+    dev .ci/run scripts/dev/*.sh docker/*.sh
 }
 
 lint_tidy() { tidy_rooms core proto server client; }
@@ -34,6 +34,10 @@ tidy_rooms() {
   # The generated headers have to be there; the rest need not be built.
   build release gelenk_proto
   mkdir -p build/tidy
+  # Without the precompiled header: it is the compiler's own, and what clang-tidy
+  # reads are the includes of the file.
+  sed -E 's/-Winvalid-pch -include [^ ]*cmake_pch\.hxx//' \
+    build/release/compile_commands.json >build/tidy/compile_commands.json
   ninja -C build/release -t deps >build/tidy/deps
   cpp_sources | grep -E "^($(IFS='|' && echo "$*"))/.*\.cc$" |
     xargs -P "$(job_count)" -I FILE \

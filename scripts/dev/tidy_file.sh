@@ -18,7 +18,7 @@ what_it_reads() {
 
 digest=$(what_it_reads | (cd build/release && xargs cat) | sha256sum)
 [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$digest" ] && exit 0
-if output=$(clang-tidy -p build/release --quiet "$file" 2>/dev/null); then
+if output=$(clang-tidy -p build/tidy --quiet "$file" 2>/dev/null); then
   echo "$digest" >"$stamp"
 else
   printf '%s\n' "$output"
