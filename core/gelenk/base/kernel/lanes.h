@@ -24,6 +24,10 @@ struct PackOf<2> {
   static GELENK_INLINE Pack Gather(const double* from, const int* at) {
     return Pack{from[at[0]], from[at[1]]};
   }
+  static GELENK_INLINE double Sum(const Pack& a) { return a[0] + a[1]; }
+  static GELENK_INLINE double Largest(const Pack& a) {
+    return a[0] > a[1] ? a[0] : a[1];
+  }
 };
 template <>
 struct PackOf<4> {
@@ -31,6 +35,15 @@ struct PackOf<4> {
   typedef int64_t Mask __attribute__((vector_size(32), may_alias));
   static GELENK_INLINE Pack Gather(const double* from, const int* at) {
     return Pack{from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
+  }
+  static GELENK_INLINE double Sum(const Pack& a) {
+    return PackOf<2>::Sum(__builtin_shufflevector(a, a, 0, 1) +
+                          __builtin_shufflevector(a, a, 2, 3));
+  }
+  static GELENK_INLINE double Largest(const Pack& a) {
+    const PackOf<2>::Pack low = __builtin_shufflevector(a, a, 0, 1);
+    const PackOf<2>::Pack high = __builtin_shufflevector(a, a, 2, 3);
+    return PackOf<2>::Largest(low > high ? low : high);
   }
 };
 template <>
@@ -40,6 +53,15 @@ struct PackOf<8> {
   static GELENK_INLINE Pack Gather(const double* from, const int* at) {
     return Pack{from[at[0]], from[at[1]], from[at[2]], from[at[3]],
                 from[at[4]], from[at[5]], from[at[6]], from[at[7]]};
+  }
+  static GELENK_INLINE double Sum(const Pack& a) {
+    return PackOf<4>::Sum(__builtin_shufflevector(a, a, 0, 1, 2, 3) +
+                          __builtin_shufflevector(a, a, 4, 5, 6, 7));
+  }
+  static GELENK_INLINE double Largest(const Pack& a) {
+    const PackOf<4>::Pack low = __builtin_shufflevector(a, a, 0, 1, 2, 3);
+    const PackOf<4>::Pack high = __builtin_shufflevector(a, a, 4, 5, 6, 7);
+    return PackOf<4>::Largest(low > high ? low : high);
   }
 };
 
@@ -62,17 +84,6 @@ struct Lanes : PackOf<kCount> {
     return a > b ? a : b;
   }
   static GELENK_INLINE Pack Abs(const Pack& a) { return Max(a, -a); }
-  static GELENK_INLINE double Sum(const Pack& a) {
-    double sum = 0;
-    for (int i = 0; i < kCount; ++i) sum += a[i];
-    return sum;
-  }
-  static GELENK_INLINE double Largest(const Pack& a) {
-    double largest = a[0];
-    for (int i = 1; i < kCount; ++i) largest = a[i] > largest ? a[i] : largest;
-    return largest;
-  }
-
   // Sine and cosine of |x| <= kLargestAngle, within 1 ulp: minimax polynomials
   // of the Cephes library's kind on [-pi/4, pi/4], a three-part reduction.
   static GELENK_INLINE void SineCosine(const Pack& x, Pack* sine,

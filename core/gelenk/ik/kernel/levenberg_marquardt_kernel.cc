@@ -5,10 +5,10 @@
 // Only plain arrays and functions of this file (and rotation_bounds.h, out of
 // line): an inline function of a library that was emitted here with a higher
 // level could be picked by the linker for everybody.
+#include "gelenk/base/kernel/lanes.h"
+#include "gelenk/ik/kernel/descent.h"
 #include "gelenk/ik/kernel/rotation_bounds.h"
 #include "gelenk/ik/kernel/tree_layout.h"
-
-#define GELENK_INLINE inline __attribute__((always_inline))
 
 namespace gelenk::kernel::GELENK_KERNEL_LEVEL {
 namespace {
@@ -17,26 +17,7 @@ constexpr int kLanes = GELENK_KERNEL_LANES;
 static_assert(kRowAlignment % kLanes == 0);
 typedef double Pack __attribute__((vector_size(8 * kLanes), may_alias));
 
-// Damping is proportional to the energy (Sugihara 2011): strong far away, gone
-// at the target, so that the last steps converge quadratically.
 constexpr double kDampingPerEnergy = 1e-2;
-constexpr double kDampingFloor = 1e-9;
-// After a step that raised the energy the damping grows by this factor, and
-// shrinks back after one that lowered it.
-constexpr double kDampingGrowth = 8;
-constexpr double kDampingShrink = 0.25;
-constexpr double kMaxDampingFactor = 1e8;
-// Steps that raised the energy in a row before the best pose is taken up again.
-constexpr int kUphillSteps = 2;
-// Progress is looked at every so many iterations.
-constexpr int kWindow = 6;
-// An impatient attempt wants the energy halved in each window; a patient one
-// ends where a window gains less than this part.
-constexpr double kImpatientGain = 0.5;
-constexpr double kStationaryGain = 1e-5;
-// No single step turns a joint by more than this, rad (or m): the linear model
-// is void beyond.
-constexpr double kMaxStep = 1.5;
 
 GELENK_INLINE double Min(double a, double b) { return a < b ? a : b; }
 GELENK_INLINE double Max(double a, double b) { return a > b ? a : b; }
@@ -128,21 +109,6 @@ GELENK_INLINE void StoreAxis(const double* m, int column, double* axis) {
   for (int i = 0; i < 3; ++i) axis[i] = m[3 * i + column];
 }
 
-// True when the rotation is surely inside its limits and off their bounds.
-GELENK_INLINE bool IsWellInside(const RotationLimit& limit, const double* q) {
-  if (!limit.quick) return false;
-  constexpr double kMargin = 1e-8;
-  const double along =
-      q[0] * limit.axis[0] + q[1] * limit.axis[1] + q[2] * limit.axis[2];
-  const double across2 =
-      q[0] * q[0] + q[1] * q[1] + q[2] * q[2] - along * along;
-  if (!(across2 < limit.swing_sine2 - kMargin)) return false;
-  const double w = Abs(q[3]);
-  const double t = q[3] < 0 ? -along : along;
-  return t > limit.twist_tangent_lower * w + kMargin &&
-         t < limit.twist_tangent_upper * w - kMargin;
-}
-
 class Solver {
  public:
   Solver(const TreeLayout& tree, const TaskTarget* targets,
@@ -154,71 +120,47 @@ class Solver {
         work_(workspace),
         q_(positions) {}
 
-  Attempt Run() {
-    Attempt attempt = {AttemptEnd::kIterations, 0, 0, false};
-    double factor = 1;
-    double best = -1;
-    double window_energy = -1;
-    int uphill = 0;
-    for (int iteration = 0;; ++iteration) {
-      ForwardPass();
-      const double energy = Residuals();
-      attempt.iterations = iteration;
-      attempt.energy = energy;
-      if (AllWithinTolerance()) {
-        attempt.end = AttemptEnd::kConverged;
-        return attempt;
+  double Evaluate() {
+    ForwardPass();
+    return Residuals();
+  }
+
+  bool IsWithinTolerance() const {
+    for (int t = 0; t < tree_.task_count; ++t) {
+      // So written that NaN is not within.
+      if (!(work_.position_errors2[t] <= settings_.position_tolerance2 &&
+            work_.rotation_errors2[t] <= settings_.rotation_tolerance2)) {
+        return false;
       }
-      if (best < 0 || energy < best) {
-        best = energy;
-        Copy(q_, work_.best_positions, tree_.position_count);
-        factor = Max(1, factor * kDampingShrink);
-        uphill = 0;
-      } else if (iteration > 0) {
-        factor = Min(factor * kDampingGrowth, kMaxDampingFactor);
-        if (++uphill >= kUphillSteps) {
-          uphill = 0;
-          Copy(work_.best_positions, q_, tree_.position_count);
-          ForwardPass();
-          Residuals();
-        }
-      }
-      if (iteration >= settings_.max_iterations) break;
-      if (iteration % kWindow == 0) {
-        if (iteration > 0) {
-          if (settings_.impatient && best > kImpatientGain * window_energy) {
-            attempt.end = AttemptEnd::kImpatient;
-            break;
-          }
-          if (best > (1 - kStationaryGain) * window_energy) {
-            attempt.end = AttemptEnd::kStationary;
-            break;
-          }
-        }
-        window_energy = best;
-      }
-      Linearize();
-      BlockColumns();
-      Accumulate();
-      // Relative to the energy at the pose that is left, not the best one.
-      Factorize(factor * (kDampingPerEnergy * energy + kDampingFloor));
-      Solve();
-      Step();
     }
-    return Finish(attempt);
+    return true;
+  }
+
+  void KeepBest() { Copy(q_, work_.best_positions, tree_.position_count); }
+  void TakeBest() { Copy(work_.best_positions, q_, tree_.position_count); }
+
+  // Weighted Jacobians of all tasks, six padded rows each, the gradient, and
+  // which columns are blocked.
+  bool Linearize() {
+    for (int c = 0; c < tree_.column_count; ++c) work_.gradient[c] = 0;
+    double* j = work_.jacobian;
+    for (int t = 0; t < tree_.task_count; ++t) {
+      const Task& task = tree_.tasks[t];
+      const int stride = PaddedRow(task.path_size);
+      if (targets_[t].active) LinearizeTask(t, task, j, stride);
+      j += 6 * stride;
+    }
+    return BlockColumns();
+  }
+
+  void Step(double damping) {
+    Accumulate();
+    Factorize(damping);
+    Solve();
+    Move();
   }
 
  private:
-  // Not converged: go back to the best pose and say what holds it.
-  Attempt Finish(Attempt attempt) {
-    Copy(work_.best_positions, q_, tree_.position_count);
-    ForwardPass();
-    attempt.energy = Residuals();
-    Linearize();
-    attempt.pushed_at_limit = BlockColumns();
-    return attempt;
-  }
-
   void ForwardPass() {
     for (int i = 0; i < tree_.node_count; ++i) {
       const Node& node = tree_.nodes[i];
@@ -238,12 +180,12 @@ class Solver {
       double* translation = work_.node_translation + 3 * i;
       Transform(parent_rotation, parent_translation,
                 node.parent_from_rest_translation, translation);
-      Move(i, node, world_from_rest, translation);
+      MoveNode(i, node, world_from_rest, translation);
     }
   }
 
-  GELENK_INLINE void Move(int i, const Node& node, const double* rest,
-                          double* translation) {
+  GELENK_INLINE void MoveNode(int i, const Node& node, const double* rest,
+                              double* translation) {
     double* rotation = work_.node_rotation + 9 * i;
     double* axis = work_.axes + 3 * node.axis;
     const double* q = q_ + node.position;
@@ -374,29 +316,6 @@ class Solver {
     e[j] = sign * (d[3 * i + j] + d[3 * j + i]) / root;
     e[k] = sign * (d[3 * i + k] + d[3 * k + i]) / root;
     return e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
-  }
-
-  bool AllWithinTolerance() const {
-    for (int t = 0; t < tree_.task_count; ++t) {
-      // So written that NaN is not within.
-      if (!(work_.position_errors2[t] <= settings_.position_tolerance2 &&
-            work_.rotation_errors2[t] <= settings_.rotation_tolerance2)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  // Weighted Jacobians of all tasks, six padded rows each, and the gradient.
-  void Linearize() {
-    for (int c = 0; c < tree_.column_count; ++c) work_.gradient[c] = 0;
-    double* j = work_.jacobian;
-    for (int t = 0; t < tree_.task_count; ++t) {
-      const Task& task = tree_.tasks[t];
-      const int stride = PaddedRow(task.path_size);
-      if (targets_[t].active) LinearizeTask(t, task, j, stride);
-      j += 6 * stride;
-    }
   }
 
   GELENK_INLINE void AddColumn(const double* axis, const double* origin,
@@ -585,7 +504,7 @@ class Solver {
     }
   }
 
-  void Step() {
+  void Move() {
     double largest = 0;
     for (int c = 0; c < tree_.column_count; ++c) {
       largest = Max(largest, Abs(work_.step[c]));
@@ -653,7 +572,8 @@ class Solver {
 Attempt Run(const TreeLayout& tree, const TaskTarget* targets,
             const Settings& settings, const Workspace& workspace,
             double* positions) {
-  return Solver(tree, targets, settings, workspace, positions).Run();
+  Solver solver(tree, targets, settings, workspace, positions);
+  return Descend(solver, settings, kDampingPerEnergy);
 }
 
 }  // namespace gelenk::kernel::GELENK_KERNEL_LEVEL

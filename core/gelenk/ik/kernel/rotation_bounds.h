@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "gelenk/base/kernel/lanes.h"
 #include "gelenk/ik/kernel/tree_layout.h"
 
 namespace gelenk::kernel {
@@ -16,6 +17,25 @@ enum RotationTouch : uint8_t {
   kTouchesTwistUpper = 4,
   kConeIsPoint = 8,  // no swing at all is allowed
 };
+
+namespace {
+
+// True when the rotation is surely inside its limits and off their bounds.
+GELENK_INLINE bool IsWellInside(const RotationLimit& limit, const double* q) {
+  if (!limit.quick) return false;
+  constexpr double kMargin = 1e-8;
+  const double along =
+      q[0] * limit.axis[0] + q[1] * limit.axis[1] + q[2] * limit.axis[2];
+  const double across2 =
+      q[0] * q[0] + q[1] * q[1] + q[2] * q[2] - along * along;
+  if (!(across2 < limit.swing_sine2 - kMargin)) return false;
+  const double w = q[3] < 0 ? -q[3] : q[3];
+  const double t = q[3] < 0 ? -along : along;
+  return t > limit.twist_tangent_lower * w + kMargin &&
+         t < limit.twist_tangent_upper * w - kMargin;
+}
+
+}  // namespace
 
 // Which bounds `rotation` (x y z w) touches, 0 for none. If any, fills the
 // columns of `body_basis` (row-major 3x3, body frame): rotating about the first
