@@ -27,6 +27,14 @@ kernel::AttemptFunction AttemptFor(InstructionSet level) {
   return kernel::baseline::Run;
 }
 
+kernel::ChainFunction ChainFunctionFor(InstructionSet level) {
+#ifdef GELENK_X86_LEVELS
+  if (level == InstructionSet::kAvx2) return kernel::avx2::RunChain;
+  if (level == InstructionSet::kAvx512) return kernel::avx512::RunChain;
+#endif
+  return kernel::baseline::RunChain;
+}
+
 kernel::Settings SettingsFor(const IkProblem& problem,
                              const kernel::TreeLayout& tree,
                              const SolverOptions& options) {
@@ -82,6 +90,17 @@ class Carver {
   size_t used_ = 0;
 };
 
+// What the kernel of chains needs: no matrix of columns by columns.
+kernel::ChainWorkspace CarveChain(const kernel::TreeLayout& tree,
+                                  const kernel::ChainLayout& chain,
+                                  Carver& carver) {
+  kernel::ChainWorkspace w = {};
+  w.records = carver.Doubles(kernel::kChainLanes * chain.record_size);
+  w.touched = carver.Bytes(tree.node_count);
+  w.position_error2 = carver.Doubles(1);
+  return w;
+}
+
 kernel::Workspace Carve(const kernel::TreeLayout& tree, Carver& carver) {
   kernel::Workspace w = {};
   w.node_rotation = carver.Doubles(9 * tree.node_count);
@@ -128,12 +147,26 @@ ConstVectorMap View(const std::vector<double>& numbers) {
 }  // namespace
 
 LevenbergMarquardtSolver::LevenbergMarquardtSolver(InstructionSet level)
-    : level_(level), attempt_(AttemptFor(level)) {}
+    : level_(level),
+      attempt_(AttemptFor(level)),
+      run_chain_(ChainFunctionFor(level)) {}
 
 void LevenbergMarquardtSolver::Reserve(const IkProblem& problem,
                                        const kernel::TreeLayout& tree) {
+  const SerialChain* chain = problem.tree().chain();
+  const auto carve = [&](Carver& carver) {
+    if (chain == nullptr) {
+      workspace_ = Carve(tree, carver);
+      return;
+    }
+    chain_workspace_ = CarveChain(tree, chain->Layout(), carver);
+    // What the report reads.
+    workspace_.touched = chain_workspace_.touched;
+    workspace_.position_errors2 = chain_workspace_.position_error2;
+    workspace_.rotation_errors2 = carver.Doubles(1);
+  };
   Carver count(nullptr);
-  Carve(tree, count);
+  carve(count);
   const size_t wanted = count.used() + kernel::kRowAlignment;
   if (memory_.size() < wanted) memory_.resize(wanted);
   // Whole cache lines: rows of J and H start on vector boundaries.
@@ -142,12 +175,28 @@ void LevenbergMarquardtSolver::Reserve(const IkProblem& problem,
   std::align(kernel::kRowAlignment * sizeof(double),
              count.used() * sizeof(double), aligned, space);
   Carver carver(static_cast<double*>(aligned));
-  workspace_ = Carve(tree, carver);
-  // The padding of J's rows is read, never written.
-  std::fill(workspace_.jacobian,
-            workspace_.jacobian + kernel::PaddedRow(tree.j_size), 0.0);
+  carve(carver);
+  if (chain == nullptr) {
+    // The padding of J's rows is read, never written.
+    std::fill(workspace_.jacobian,
+              workspace_.jacobian + kernel::PaddedRow(tree.j_size), 0.0);
+  } else {
+    workspace_.rotation_errors2[0] = 0;
+  }
   start_.resize(problem.skeleton().position_count());
   change_.resize(problem.skeleton().velocity_count());
+}
+
+kernel::Attempt LevenbergMarquardtSolver::Run(const IkProblem& problem,
+                                              const kernel::TreeLayout& tree,
+                                              const kernel::Settings& settings,
+                                              VectorView positions) {
+  const kernel::TaskTarget* targets = problem.targets().data();
+  if (const SerialChain* chain = problem.tree().chain()) {
+    return run_chain_(chain->Layout(), targets[0], settings, chain_workspace_,
+                      positions.data());
+  }
+  return attempt_(tree, targets, settings, workspace_, positions.data());
 }
 
 void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
@@ -163,8 +212,7 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
   kernel::Settings settings = SettingsFor(problem, tree, options);
   const int budget = RestartBudget(options, start);
   settings.impatient = budget > 0;
-  kernel::Attempt attempt = attempt_(tree, problem.targets().data(), settings,
-                                     workspace_, positions.data());
+  kernel::Attempt attempt = Run(problem, tree, settings, positions);
   report.iteration_count = attempt.iterations;
   report.restart_count = 0;
   if (attempt.end != kernel::AttemptEnd::kConverged && budget > 0) {
@@ -206,8 +254,7 @@ kernel::Attempt LevenbergMarquardtSolver::Restart(const IkProblem& problem,
                                                   SolveReport& report) {
   const kernel::TreeLayout tree = problem.tree().Layout();
   const auto run = [&] {
-    attempt = attempt_(tree, problem.targets().data(), settings, workspace_,
-                       positions.data());
+    attempt = Run(problem, tree, settings, positions);
     report.iteration_count += attempt.iterations;
   };
   FindMovingJoints(problem, tree);

@@ -22,6 +22,7 @@
 
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/instruction_set.h"
+#include "gelenk/ik/kernel/chain_layout.h"
 #include "gelenk/ik/kernel/tree_layout.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
@@ -47,6 +48,9 @@ class LevenbergMarquardtSolver {
 
  private:
   void Reserve(const IkProblem& problem, const kernel::TreeLayout& tree);
+  // One attempt, by the kernel that fits the problem.
+  kernel::Attempt Run(const IkProblem& problem, const kernel::TreeLayout& tree,
+                      const kernel::Settings& settings, VectorView positions);
   // The joints that move a goal that is on.
   void FindMovingJoints(const IkProblem& problem,
                         const kernel::TreeLayout& tree);
@@ -59,9 +63,11 @@ class LevenbergMarquardtSolver {
 
   InstructionSet level_;
   kernel::AttemptFunction attempt_;
+  kernel::ChainFunction run_chain_;
   // Grow to the largest problem seen and stay.
   std::vector<double> memory_;
   kernel::Workspace workspace_ = {};
+  kernel::ChainWorkspace chain_workspace_ = {};
   std::vector<double> start_;
   std::vector<double> best_;
   std::vector<double> change_;

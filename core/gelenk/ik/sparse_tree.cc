@@ -345,6 +345,7 @@ class SparseTreeBuilder {
 SparseTree::SparseTree(const Skeleton& skeleton,
                        absl::Span<const EffectorTask> tasks) {
   SparseTreeBuilder(skeleton, tasks, *this).Build();
+  chain_ = SerialChain::Of(Layout());
 }
 
 kernel::TreeLayout SparseTree::Layout() const {
@@ -370,7 +371,8 @@ size_t SparseTree::ByteSize() const {
   return sizeof(*this) + bytes(nodes_) + bytes(rotation_limits_) +
          bytes(columns_) + bytes(lower_) + bytes(upper_) +
          bytes(path_columns_) + bytes(followers_) + bytes(tasks_) +
-         bytes(joints_of_nodes_) + bytes(joints_of_columns_);
+         bytes(joints_of_nodes_) + bytes(joints_of_columns_) +
+         (chain_ ? chain_->ByteSize() : 0);
 }
 
 }  // namespace gelenk

@@ -7,10 +7,12 @@
 #ifndef GELENK_IK_SPARSE_TREE_H_
 #define GELENK_IK_SPARSE_TREE_H_
 
+#include <optional>
 #include <vector>
 
 #include "absl/types/span.h"
 #include "gelenk/ik/kernel/tree_layout.h"
+#include "gelenk/ik/serial_chain.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -35,6 +37,9 @@ class SparseTree {
   // Index in the skeleton of the joint whose degree of freedom a column is.
   int joint_of_column(int column) const { return joints_of_columns_[column]; }
 
+  // For the solver of chains; null when these tasks make none.
+  const SerialChain* chain() const { return chain_ ? &*chain_ : nullptr; }
+
   size_t ByteSize() const;
 
  private:
@@ -50,6 +55,7 @@ class SparseTree {
   std::vector<kernel::Task> tasks_;
   std::vector<int> joints_of_nodes_;
   std::vector<int> joints_of_columns_;
+  std::optional<SerialChain> chain_;
   int axis_count_ = 0;
   int h_size_ = 0;
   int j_size_ = 0;

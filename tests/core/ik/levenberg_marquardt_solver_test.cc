@@ -201,15 +201,16 @@ TEST(LevenbergMarquardtTest, GoalsOfWeightZeroAreOff) {
   const auto arm = PlanarChain({0, 0, 0}, {1, 1});
   Goal off = PositionGoalFor("j1", {0, -1, 0});
   off.weight = 0;
+  Goal elsewhere = PositionGoalFor("j1", {7, 8, 9});
+  elsewhere.weight = 0;
   const Goal on = PositionGoalFor("tip", {1, 1, 0});
   const Eigen::Vector2d start(0.3, 0.9);
   const Solved both = Solve(arm, {off, on}, start);
-  const Solved alone = Solve(arm, {on}, start);
   EXPECT_EQ(both.report.outcome, SolveOutcome::kConverged);
-  EXPECT_EQ(both.positions, alone.positions);
   EXPECT_EQ(both.report.position_errors_m[0], 0);
-  EXPECT_EQ(both.report.position_errors_m[1],
-            alone.report.position_errors_m[0]);
+  EXPECT_LE(both.report.position_errors_m[1],
+            SolverOptions().position_tolerance_m);
+  EXPECT_EQ(both.positions, Solve(arm, {elsewhere, on}, start).positions);
 }
 
 TEST(LevenbergMarquardtTest, JointsOfGoalsThatAreOffStay) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <string>
 #include <vector>
 
 #include "gelenk/ik/levenberg_marquardt_solver.h"
@@ -77,12 +78,15 @@ void* __wrap_aligned_alloc(size_t alignment, size_t size) {
 namespace gelenk {
 namespace {
 
+using ::gelenk::testing::EffectorPose;
 using ::gelenk::testing::PandaArm;
 using ::gelenk::testing::PoseGoalsAt;
+using ::gelenk::testing::PositionGoalFor;
 using ::gelenk::testing::Random;
 using ::gelenk::testing::RandomPose;
 using ::gelenk::testing::RandomPoseWithinLimits;
 using ::gelenk::testing::RandomSkeleton;
+using ::gelenk::testing::SkeletonRecipe;
 using ::gelenk::testing::StartNear;
 
 // A stream: targets along the way between two poses, some out of reach.
@@ -178,6 +182,34 @@ TEST(SolverAllocationTest, WarmFramesOfManySkeletonsInTurn) {
     streams.push_back(MakeStream(random, RandomSkeleton(random)));
   }
   streams.push_back(MakeStream(random, PandaArm()));
+  EXPECT_EQ(AllocationsOfWarmFrames(streams, {}), 0);
+}
+
+// A chain with one position goal has a kernel of its own.
+TEST(SolverAllocationTest, WarmFramesOfAChain) {
+  Random random(6);
+  SkeletonRecipe recipe;
+  recipe.types = {JointType::kRevolute, JointType::kSpherical};
+  recipe.branching = 0;
+  recipe.mimicking = 0;
+  recipe.joint_count = 40;
+  const auto skeleton = RandomSkeleton(random, recipe);
+  const std::string id = skeleton->end_effectors()[0].id;
+  const auto target_at = [&](const Eigen::VectorXd& pose) {
+    return EffectorPose(*skeleton, pose, id).translation;
+  };
+  const Eigen::VectorXd start = RandomPoseWithinLimits(random, *skeleton);
+  std::vector<Stream> streams;
+  streams.push_back(
+      {IkProblem::Create(skeleton, {PositionGoalFor(id, target_at(start))})
+           .value(),
+       {},
+       start,
+       {}});
+  for (int frame = 0; frame < 20; ++frame) {
+    streams[0].frames.push_back(
+        {target_at(StartNear(random, *skeleton, start, 0.2))});
+  }
   EXPECT_EQ(AllocationsOfWarmFrames(streams, {}), 0);
 }
 
