@@ -1,5 +1,7 @@
 #include "convert/solver.h"
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -18,8 +20,53 @@ v1::SolveReport::Outcome ToProto(SolveOutcome outcome) {
       return v1::SolveReport::OUTCOME_STALLED_AT_LIMITS;
     case SolveOutcome::kIterationLimit:
       return v1::SolveReport::OUTCOME_ITERATION_LIMIT;
+    case SolveOutcome::kSingular:
+      return v1::SolveReport::OUTCOME_SINGULAR;
+    case SolveOutcome::kTimeLimit:
+      return v1::SolveReport::OUTCOME_TIME_LIMIT;
   }
   return v1::SolveReport::OUTCOME_UNSPECIFIED;
+}
+
+v1::SolverMethod ToProto(SolverMethod method) {
+  switch (method) {
+    case SolverMethod::kAuto:
+      return v1::SOLVER_METHOD_UNSPECIFIED;
+    case SolverMethod::kTwoLink:
+      return v1::SOLVER_METHOD_TWO_LINK;
+    case SolverMethod::kNewton:
+      return v1::SOLVER_METHOD_NEWTON;
+    case SolverMethod::kPseudoInverse:
+      return v1::SOLVER_METHOD_PSEUDO_INVERSE;
+    case SolverMethod::kMinimalChange:
+      return v1::SOLVER_METHOD_MINIMAL_CHANGE;
+    case SolverMethod::kLevenbergMarquardt:
+      return v1::SOLVER_METHOD_LEVENBERG_MARQUARDT;
+    case SolverMethod::kFabrik:
+      return v1::SOLVER_METHOD_FABRIK;
+  }
+  return v1::SOLVER_METHOD_UNSPECIFIED;
+}
+
+std::optional<SolverMethod> FromProto(v1::SolverMethod method) {
+  switch (method) {
+    case v1::SOLVER_METHOD_UNSPECIFIED:
+      return SolverMethod::kAuto;
+    case v1::SOLVER_METHOD_TWO_LINK:
+      return SolverMethod::kTwoLink;
+    case v1::SOLVER_METHOD_NEWTON:
+      return SolverMethod::kNewton;
+    case v1::SOLVER_METHOD_PSEUDO_INVERSE:
+      return SolverMethod::kPseudoInverse;
+    case v1::SOLVER_METHOD_MINIMAL_CHANGE:
+      return SolverMethod::kMinimalChange;
+    case v1::SOLVER_METHOD_LEVENBERG_MARQUARDT:
+      return SolverMethod::kLevenbergMarquardt;
+    case v1::SOLVER_METHOD_FABRIK:
+      return SolverMethod::kFabrik;
+    default:
+      return std::nullopt;
+  }
 }
 
 void CopyErrors(const std::vector<double>& errors,
@@ -28,6 +75,13 @@ void CopyErrors(const std::vector<double>& errors,
   for (size_t i = 0; i < errors.size(); ++i) {
     (*out)[static_cast<int>(i)] = static_cast<float>(errors[i]);
   }
+}
+
+void SetDuration(absl::Duration duration, google::protobuf::Duration* proto) {
+  const int64_t seconds =
+      absl::IDivDuration(duration, absl::Seconds(1), &duration);
+  proto->set_seconds(seconds);
+  proto->set_nanos(static_cast<int>(absl::ToInt64Nanoseconds(duration)));
 }
 
 }  // namespace
@@ -45,11 +99,16 @@ absl::StatusOr<SolverOptions> FromProto(const v1::SolverOptions& proto) {
   if (proto.has_rotation_tolerance_rad()) {
     options.rotation_tolerance_rad = proto.rotation_tolerance_rad();
   }
+  if (proto.has_time_limit()) {
+    options.time_limit = absl::Seconds(proto.time_limit().seconds()) +
+                         absl::Nanoseconds(proto.time_limit().nanos());
+  }
   if (proto.diagnose()) options.detail = ReportDetail::kDiagnosis;
 
   Violations violations;
-  if (proto.method() != v1::SOLVER_METHOD_UNSPECIFIED &&
-      proto.method() != v1::SOLVER_METHOD_LEVENBERG_MARQUARDT) {
+  if (const auto method = FromProto(proto.method())) {
+    options.method = *method;
+  } else {
     violations.Add("method", absl::StrCat("no such solver method: ",
                                           static_cast<int>(proto.method())));
   }
@@ -59,12 +118,15 @@ absl::StatusOr<SolverOptions> FromProto(const v1::SolverOptions& proto) {
 }
 
 void ToProto(const SolverOptions& options, v1::SolverOptions* proto) {
-  proto->set_method(v1::SOLVER_METHOD_LEVENBERG_MARQUARDT);
+  proto->set_method(ToProto(options.method));
   proto->set_max_iterations(options.max_iterations);
   if (options.max_restarts) proto->set_max_restarts(*options.max_restarts);
   proto->set_restart_seed(options.restart_seed);
   proto->set_position_tolerance_m(options.position_tolerance_m);
   proto->set_rotation_tolerance_rad(options.rotation_tolerance_rad);
+  if (options.time_limit) {
+    SetDuration(*options.time_limit, proto->mutable_time_limit());
+  }
   proto->set_diagnose(options.detail == ReportDetail::kDiagnosis);
 }
 
@@ -76,12 +138,10 @@ void ToProto(const SolveReport& report, ReportDetail detail,
   proto->set_restart_count(report.restart_count);
   CopyErrors(report.position_errors_m, proto->mutable_position_errors_m());
   CopyErrors(report.rotation_errors_rad, proto->mutable_rotation_errors_rad());
-  proto->mutable_solve_duration()->set_nanos(
-      static_cast<int>(absl::ToInt64Nanoseconds(solve_duration) % 1000000000));
-  proto->mutable_solve_duration()->set_seconds(
-      absl::ToInt64Seconds(solve_duration));
+  SetDuration(solve_duration, proto->mutable_solve_duration());
   if (detail == ReportDetail::kBrief) return;
-  proto->set_method(v1::SOLVER_METHOD_LEVENBERG_MARQUARDT);
+  proto->set_method(ToProto(report.method));
+  proto->set_kkt_residual(report.kkt_residual);
   for (int joint : report.limited_joints) proto->add_limited_joints(joint);
   proto->set_change(report.change);
   if (detail != ReportDetail::kDiagnosis) return;

@@ -126,8 +126,7 @@ class WatchHealthCall final : public Ticking {
 void ServeHealth(Service* service, ServiceState* state, IoThread* thread) {
   ServeUnary(
       service, &Service::RequestCheck,
-      [state](LevenbergMarquardtSolver&,
-              const health::HealthCheckRequest& request,
+      [state](IkSolver&, const health::HealthCheckRequest& request,
               health::HealthCheckResponse* response) {
         return Check(*state, request, response);
       },

@@ -78,8 +78,8 @@ void ImportSkeletonCall::OnRead(bool ok) {
     Finish(Malformed("header", "the first message must hold it"));
     return;
   }
-  const bool taken = state_->workers.Submit(
-      [this](LevenbergMarquardtSolver&) { Finish(Import()); });
+  const bool taken =
+      state_->workers.Submit([this](IkSolver&) { Finish(Import()); });
   if (!taken) {
     Finish(absl::ResourceExhaustedError("too many calls are waiting"));
   }

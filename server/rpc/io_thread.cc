@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/time/clock.h"
+#include "server/rpc/solver_clock.h"
 
 namespace gelenk::server {
 namespace {
@@ -17,7 +18,7 @@ std::chrono::system_clock::time_point After(absl::Duration delay) {
 
 IoThread::IoThread(std::unique_ptr<grpc::ServerCompletionQueue> queue,
                    InstructionSet instruction_set)
-    : queue_(std::move(queue)), solver_(instruction_set) {}
+    : queue_(std::move(queue)), solver_(instruction_set, &SolverClock) {}
 
 IoThread::~IoThread() { Join(); }
 

@@ -15,7 +15,7 @@
 #include <unordered_set>
 
 #include "absl/time/time.h"
-#include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/ik/ik_solver.h"
 #include "server/rpc/completion.h"
 
 namespace gelenk::server {
@@ -42,7 +42,7 @@ class IoThread {
   void Join();
 
   grpc::ServerCompletionQueue* queue() { return queue_.get(); }
-  LevenbergMarquardtSolver& solver() { return solver_; }
+  IkSolver& solver() { return solver_; }
 
   // From the thread itself.
   void AddTicking(Ticking* call) { ticking_.insert(call); }
@@ -56,7 +56,7 @@ class IoThread {
   void OnTick(bool ok);
 
   std::unique_ptr<grpc::ServerCompletionQueue> queue_;
-  LevenbergMarquardtSolver solver_;
+  IkSolver solver_;
   std::unordered_set<Ticking*> ticking_;
   std::atomic<int> live_calls_{0};
   std::atomic<bool> stopping_{false};

@@ -23,7 +23,6 @@ namespace gelenk::server {
 namespace {
 
 using Service = v1::KinematicsService::AsyncService;
-using Solver = LevenbergMarquardtSolver;
 
 absl::StatusOr<StoredSkeleton> FindSkeleton(const ServiceState& state,
                                             absl::string_view field,
@@ -134,7 +133,7 @@ absl::Status ComputeForwardKinematics(
 }
 
 absl::Status SolveInverseKinematics(
-    const ServiceState& state, Solver& solver,
+    const ServiceState& state, IkSolver& solver,
     const v1::SolveInverseKinematicsRequest& request,
     v1::SolveInverseKinematicsResponse* response) {
   absl::StatusOr<StoredSkeleton> stored =
@@ -145,12 +144,13 @@ absl::Status SolveInverseKinematics(
   Violations violations;
   absl::StatusOr<std::vector<Goal>> goals = convert::FromProto(request.goals());
   violations.AddStatus("", goals.status());
-  absl::StatusOr<IkProblem> problem =
-      goals.ok() ? stored->trees->CreateProblem(std::move(*goals))
-                 : goals.status();
-  if (goals.ok()) violations.AddStatus("", problem.status());
   absl::StatusOr<SolverOptions> options =
       convert::FromProto(request.solver_options());
+  absl::StatusOr<IkProblem> problem =
+      goals.ok() ? stored->trees->CreateProblem(
+                       *std::move(goals), options.value_or(SolverOptions()))
+                 : goals.status();
+  if (goals.ok()) violations.AddStatus("", problem.status());
   violations.AddStatus("solver_options", options.status());
   absl::StatusOr<Eigen::VectorXd> positions = skeleton.rest_positions();
   if (request.has_start_pose()) {
@@ -200,49 +200,50 @@ absl::Status GetServerInfo(const ServiceState& state,
 void ServeKinematics(Service* service, ServiceState* state, IoThread* thread) {
   ServeUnary(
       service, &Service::RequestCreateSkeleton,
-      [state](Solver&, const v1::CreateSkeletonRequest& request,
+      [state](IkSolver&, const v1::CreateSkeletonRequest& request,
               v1::Skeleton* response) {
         return CreateSkeleton(*state, request, response);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestGetSkeleton,
-      [state](Solver&, const v1::GetSkeletonRequest& request,
+      [state](IkSolver&, const v1::GetSkeletonRequest& request,
               v1::Skeleton* response) {
         return GetSkeleton(*state, request, response);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestListSkeletons,
-      [state](Solver&, const v1::ListSkeletonsRequest& request,
+      [state](IkSolver&, const v1::ListSkeletonsRequest& request,
               v1::ListSkeletonsResponse* response) {
         return ListSkeletons(*state, request, response);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestDeleteSkeleton,
-      [state](Solver&, const v1::DeleteSkeletonRequest& request,
+      [state](IkSolver&, const v1::DeleteSkeletonRequest& request,
               google::protobuf::Empty*) {
         return DeleteSkeleton(*state, request);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestComputeForwardKinematics,
-      [state](Solver&, const v1::ComputeForwardKinematicsRequest& request,
+      [state](IkSolver&, const v1::ComputeForwardKinematicsRequest& request,
               v1::ComputeForwardKinematicsResponse* response) {
         return ComputeForwardKinematics(*state, request, response);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestSolveInverseKinematics,
-      [state](Solver& solver, const v1::SolveInverseKinematicsRequest& request,
+      [state](IkSolver& solver,
+              const v1::SolveInverseKinematicsRequest& request,
               v1::SolveInverseKinematicsResponse* response) {
         return SolveInverseKinematics(*state, solver, request, response);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestGetServerInfo,
-      [state](Solver&, const v1::GetServerInfoRequest&,
+      [state](IkSolver&, const v1::GetServerInfoRequest&,
               v1::ServerInfo* response) {
         return GetServerInfo(*state, response);
       },

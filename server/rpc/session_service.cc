@@ -21,7 +21,6 @@ namespace gelenk::server {
 namespace {
 
 using Service = v1::SessionService::AsyncService;
-using Solver = LevenbergMarquardtSolver;
 
 // Keys travel as a header, so they must be visible ASCII.
 constexpr size_t kMaxAffinityKeyBytes = 128;
@@ -58,7 +57,7 @@ absl::StatusOr<std::shared_ptr<Session>> MakeSession(const ServiceState& state,
   violations.AddStatus("session", parts.status());
   if (!violations.empty()) return violations.ToStatus();
   absl::StatusOr<IkProblem> problem =
-      stored->trees->CreateProblem(parts->goals);
+      stored->trees->CreateProblem(parts->goals, parts->options);
   violations.AddStatus("session", problem.status());
   if (!violations.empty()) return violations.ToStatus();
   const std::string affinity_key = proto.affinity_key().empty()
@@ -154,7 +153,7 @@ absl::Status DeleteSession(ServiceState& state,
   return status;
 }
 
-absl::Status SolveSession(const ServiceState& state, Solver& solver,
+absl::Status SolveSession(const ServiceState& state, IkSolver& solver,
                           const v1::SolveSessionRequest& request,
                           v1::SolveSessionResponse* response) {
   absl::StatusOr<std::shared_ptr<Session>> session =
@@ -193,42 +192,42 @@ absl::Status SolveSession(const ServiceState& state, Solver& solver,
 void ServeSessions(Service* service, ServiceState* state, IoThread* thread) {
   ServeUnary(
       service, &Service::RequestCreateSession,
-      [state](Solver&, const v1::CreateSessionRequest& request,
+      [state](IkSolver&, const v1::CreateSessionRequest& request,
               v1::Session* response) {
         return CreateSession(*state, request, response);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestGetSession,
-      [state](Solver&, const v1::GetSessionRequest& request,
+      [state](IkSolver&, const v1::GetSessionRequest& request,
               v1::Session* response) {
         return GetSession(*state, request, response);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestListSessions,
-      [state](Solver&, const v1::ListSessionsRequest& request,
+      [state](IkSolver&, const v1::ListSessionsRequest& request,
               v1::ListSessionsResponse* response) {
         return ListSessions(*state, request, response);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestUpdateSession,
-      [state](Solver&, const v1::UpdateSessionRequest& request,
+      [state](IkSolver&, const v1::UpdateSessionRequest& request,
               v1::Session* response) {
         return UpdateSession(*state, request, response);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestDeleteSession,
-      [state](Solver&, const v1::DeleteSessionRequest& request,
+      [state](IkSolver&, const v1::DeleteSessionRequest& request,
               google::protobuf::Empty*) {
         return DeleteSession(*state, request);
       },
       state, thread);
   ServeUnary(
       service, &Service::RequestSolveSession,
-      [state](Solver& solver, const v1::SolveSessionRequest& request,
+      [state](IkSolver& solver, const v1::SolveSessionRequest& request,
               v1::SolveSessionResponse* response) {
         return SolveSession(*state, solver, request, response);
       },

@@ -196,8 +196,8 @@ absl::Status StreamSlot::Take(const v1::TargetFrame& frame, absl::Time now) {
   return absl::OkStatus();
 }
 
-absl::Status StreamSlot::Answer(LevenbergMarquardtSolver& solver,
-                                absl::Time read_time, v1::PoseFrame* answer) {
+absl::Status StreamSlot::Answer(IkSolver& solver, absl::Time read_time,
+                                v1::PoseFrame* answer) {
   const bool whole = answered_ % report_interval_ == 0;
   if (absl::Status status = session_->Solve(driver_, solver, whole, solved_);
       !status.ok()) {

@@ -10,7 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
-#include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/ik/ik_solver.h"
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/v1/session_service.pb.h"
 #include "server/rpc/service_state.h"
@@ -45,7 +45,7 @@ class StreamSlot {
   bool IsHeavy() const { return session_->IsHeavy(); }
 
   // Solves for what was taken and fills the answer.
-  absl::Status Answer(LevenbergMarquardtSolver& solver, absl::Time read_time,
+  absl::Status Answer(IkSolver& solver, absl::Time read_time,
                       v1::PoseFrame* answer);
 
   // OK while this slot drives its session, else why it does not.

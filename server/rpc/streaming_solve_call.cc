@@ -142,8 +142,7 @@ void StreamingSolveCall::Finish() {
   stream_.Finish(ToGrpc(close_status_), &finished_);
 }
 
-bool StreamingSolveCall::Consume(LevenbergMarquardtSolver& solver,
-                                 bool heavy_allowed) {
+bool StreamingSolveCall::Consume(IkSolver& solver, bool heavy_allowed) {
   const v1::StreamingSolveRequest& request = *request_.get();
   for (; next_attach_ < request.attach_size(); ++next_attach_) {
     const v1::AttachSession& attach = request.attach(next_attach_);
@@ -173,8 +172,7 @@ bool StreamingSolveCall::Consume(LevenbergMarquardtSolver& solver,
 }
 
 bool StreamingSolveCall::ConsumeFrame(const v1::TargetFrame& frame,
-                                      LevenbergMarquardtSolver& solver,
-                                      bool heavy_allowed) {
+                                      IkSolver& solver, bool heavy_allowed) {
   const auto found = slots_.find(frame.slot());
   if (found == slots_.end()) {
     v1::PoseFrame* answer = AddAnswer(0);
@@ -196,8 +194,7 @@ bool StreamingSolveCall::ConsumeFrame(const v1::TargetFrame& frame,
   return true;
 }
 
-bool StreamingSolveCall::AnswerMerged(LevenbergMarquardtSolver& solver,
-                                      bool heavy_allowed) {
+bool StreamingSolveCall::AnswerMerged(IkSolver& solver, bool heavy_allowed) {
   // From where the last message was full, so that no slot is left out for
   // ever.
   auto slot = slots_.upper_bound(last_merged_);
@@ -211,7 +208,7 @@ bool StreamingSolveCall::AnswerMerged(LevenbergMarquardtSolver& solver,
   return true;
 }
 
-bool StreamingSolveCall::AnswerLast(int index, LevenbergMarquardtSolver& solver,
+bool StreamingSolveCall::AnswerLast(int index, IkSolver& solver,
                                     bool heavy_allowed) {
   const auto found = slots_.find(index);
   if (found == slots_.end()) return true;
@@ -225,8 +222,7 @@ bool StreamingSolveCall::AnswerLast(int index, LevenbergMarquardtSolver& solver,
 void StreamingSolveCall::ConsumeOnWorker() {
   working_ = true;
   // Asked now: the next message may come while the worker is at it.
-  const auto work = [this, has_message =
-                               has_message_](LevenbergMarquardtSolver& solver) {
+  const auto work = [this, has_message = has_message_](IkSolver& solver) {
     burst_begin_ = Now();
     if (has_message) Consume(solver, true);
     AnswerMerged(solver, true);
@@ -237,7 +233,7 @@ void StreamingSolveCall::ConsumeOnWorker() {
 }
 
 void StreamingSolveCall::AnswerSlot(int index, StreamSlot& slot,
-                                    LevenbergMarquardtSolver& solver) {
+                                    IkSolver& solver) {
   v1::PoseFrame* answer = AddAnswer(slot.answer_bytes());
   const absl::Status status = slot.Answer(solver, read_time_, answer);
   if (status.ok()) {

@@ -52,21 +52,19 @@ class StreamingSolveCall final : public Ticking {
   void Advance();
   // Works through the message that was read, as far as answers may pile up.
   // False when a heavy solve comes up and `heavy_allowed` is not.
-  bool Consume(LevenbergMarquardtSolver& solver, bool heavy_allowed);
-  bool ConsumeFrame(const v1::TargetFrame& frame,
-                    LevenbergMarquardtSolver& solver, bool heavy_allowed);
+  bool Consume(IkSolver& solver, bool heavy_allowed);
+  bool ConsumeFrame(const v1::TargetFrame& frame, IkSolver& solver,
+                    bool heavy_allowed);
   // Solves what LATEST_WINS slots have merged, as far as a message holds it.
   // False as in Consume.
-  bool AnswerMerged(LevenbergMarquardtSolver& solver, bool heavy_allowed);
+  bool AnswerMerged(IkSolver& solver, bool heavy_allowed);
   // The same for one slot that is about to go.
-  bool AnswerLast(int slot, LevenbergMarquardtSolver& solver,
-                  bool heavy_allowed);
+  bool AnswerLast(int slot, IkSolver& solver, bool heavy_allowed);
   void ConsumeOnWorker();
 
   void Attach(const v1::AttachSession& request);
   void Detach(int slot, const absl::Status& why);
-  void AnswerSlot(int slot, StreamSlot& stream_slot,
-                  LevenbergMarquardtSolver& solver);
+  void AnswerSlot(int slot, StreamSlot& stream_slot, IkSolver& solver);
   v1::StreamEvent* AddEvent(v1::StreamEvent::Kind kind, int slot);
   v1::PoseFrame* AddAnswer(size_t bytes);
 

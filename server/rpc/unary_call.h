@@ -24,8 +24,8 @@ class UnaryCall {
   // A generated Request… function, bound to its service.
   using Accept = std::function<void(grpc::ServerContext*, Request*, Writer*,
                                     grpc::ServerCompletionQueue*, void*)>;
-  using Handle = std::function<absl::Status(LevenbergMarquardtSolver&,
-                                            const Request&, Response*)>;
+  using Handle =
+      std::function<absl::Status(IkSolver&, const Request&, Response*)>;
 
   struct Method {
     Accept accept;
@@ -50,10 +50,9 @@ class UnaryCall {
       return;
     }
     Start(method_);
-    const bool taken =
-        method_.state->workers.Submit([this](LevenbergMarquardtSolver& solver) {
-          Finish(method_.handle(solver, request_, &response_));
-        });
+    const bool taken = method_.state->workers.Submit([this](IkSolver& solver) {
+      Finish(method_.handle(solver, request_, &response_));
+    });
     if (!taken) {
       Finish(absl::ResourceExhaustedError("too many calls are waiting"));
     }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "server/rpc/solver_clock.h"
+
 namespace gelenk::server {
 
 WorkerPool::WorkerPool(int threads, int max_waiting,
@@ -28,7 +30,7 @@ bool WorkerPool::Submit(Work work) {
 }
 
 void WorkerPool::Loop(InstructionSet instruction_set) {
-  LevenbergMarquardtSolver solver(instruction_set);
+  IkSolver solver(instruction_set, &SolverClock);
   for (;;) {
     Work work;
     {

@@ -10,14 +10,14 @@
 
 #include "absl/base/thread_annotations.h"
 #include "absl/synchronization/mutex.h"
-#include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/ik/ik_solver.h"
 
 namespace gelenk::server {
 
 class WorkerPool {
  public:
   // Gets the solver of the thread that runs it.
-  using Work = std::function<void(LevenbergMarquardtSolver&)>;
+  using Work = std::function<void(IkSolver&)>;
 
   WorkerPool(int threads, int max_waiting, InstructionSet instruction_set);
   // Runs what waits, then joins.

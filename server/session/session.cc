@@ -118,7 +118,7 @@ absl::Status Session::Resume(DriverId driver, const Eigen::VectorXd& positions,
   CheckAndNormalize("world_from_skeleton", place, violations);
   if (!violations.empty()) return violations.ToStatus();
   if (goals != nullptr) {
-    absl::StatusOr<IkProblem> problem = trees_->CreateProblem(*goals);
+    absl::StatusOr<IkProblem> problem = trees_->CreateProblem(*goals, options_);
     if (!problem.ok()) return problem.status();
     problem_ = *std::move(problem);
     // The driver cannot know these from its create request.
@@ -151,7 +151,7 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
     absl::StatusOr<std::vector<Goal>> goals = frame.patch(problem_.goals());
     if (!goals.ok()) return goals.status();
     absl::StatusOr<IkProblem> problem =
-        trees_->CreateProblem(*std::move(goals));
+        trees_->CreateProblem(*std::move(goals), options_);
     if (!problem.ok()) return problem.status();
     patched = *std::move(problem);
     patched->SetWorldFromSkeleton(problem_.world_from_skeleton());
@@ -195,8 +195,8 @@ bool Session::IsHeavy() const {
          options_.detail == ReportDetail::kDiagnosis;
 }
 
-absl::Status Session::Solve(DriverId driver, LevenbergMarquardtSolver& solver,
-                            bool whole, SolvedFrame& frame) {
+absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
+                            SolvedFrame& frame) {
   absl::MutexLock lock(&mutex_);
   if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
     return status;
@@ -258,7 +258,7 @@ absl::Status Session::Update(
   SessionState state = StateLocked();
   if (absl::Status status = change(state); !status.ok()) return status;
   absl::StatusOr<IkProblem> problem =
-      trees_->CreateProblem(std::move(state.goals));
+      trees_->CreateProblem(std::move(state.goals), state.options);
   if (!problem.ok()) return problem.status();
   problem->SetWorldFromSkeleton(state.world_from_skeleton);
 

@@ -18,7 +18,7 @@
 #include "absl/synchronization/mutex.h"
 #include "absl/time/time.h"
 #include "gelenk/ik/ik_problem.h"
-#include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/ik/ik_solver.h"
 #include "gelenk/skeleton/skeleton.h"
 #include "server/session/input_frame.h"
 #include "server/session/shared_trees.h"
@@ -98,8 +98,8 @@ class Session {
   bool IsHeavy() const;
 
   // Solves for the present targets. `whole` asks for the whole report.
-  absl::Status Solve(DriverId driver, LevenbergMarquardtSolver& solver,
-                     bool whole, SolvedFrame& frame);
+  absl::Status Solve(DriverId driver, IkSolver& solver, bool whole,
+                     SolvedFrame& frame);
 
   // The last pose, without solving.
   void CopyPositions(Eigen::VectorXd& positions) const;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "gelenk/base/violations.h"
+#include "gelenk/ik/ik_solver.h"
+
 namespace gelenk::server {
 namespace {
 
@@ -29,10 +32,16 @@ std::string BitsOf(absl::Span<const EffectorTask> tasks) {
 SharedTrees::SharedTrees(std::shared_ptr<const Skeleton> skeleton)
     : skeleton_(std::move(skeleton)) {}
 
-absl::StatusOr<IkProblem> SharedTrees::CreateProblem(std::vector<Goal> goals) {
-  return IkProblem::Create(
+absl::StatusOr<IkProblem> SharedTrees::CreateProblem(
+    std::vector<Goal> goals, const SolverOptions& options) {
+  absl::StatusOr<IkProblem> problem = IkProblem::Create(
       skeleton_, std::move(goals),
       [this](absl::Span<const EffectorTask> tasks) { return Find(tasks); });
+  if (!problem.ok()) return problem.status();
+  Violations violations;
+  violations.AddStatus("solver_options", IkSolver::Check(*problem, options));
+  if (!violations.empty()) return violations.ToStatus();
+  return problem;
 }
 
 std::shared_ptr<const SparseTree> SharedTrees::Find(

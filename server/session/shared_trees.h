@@ -16,6 +16,7 @@
 #include "absl/synchronization/mutex.h"
 #include "absl/types/span.h"
 #include "gelenk/ik/ik_problem.h"
+#include "gelenk/ik/solver_options.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk::server {
@@ -26,8 +27,10 @@ class SharedTrees {
 
   const std::shared_ptr<const Skeleton>& skeleton() const { return skeleton_; }
 
-  // As IkProblem::Create, on a shared tree.
-  absl::StatusOr<IkProblem> CreateProblem(std::vector<Goal> goals);
+  // As IkProblem::Create, on a shared tree, and checked as IkSolver::Check does
+  // it: its violations are below "solver_options".
+  absl::StatusOr<IkProblem> CreateProblem(std::vector<Goal> goals,
+                                          const SolverOptions& options = {});
 
   // Trees that some problem is on.
   int tree_count() const;

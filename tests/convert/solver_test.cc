@@ -23,9 +23,13 @@ TEST(ConvertSolverTest, OptionsComeRound) {
   proto.set_restart_seed(-12345678901);
   proto.set_position_tolerance_m(1e-5);
   proto.set_rotation_tolerance_rad(2e-3);
+  proto.mutable_time_limit()->set_seconds(2);
+  proto.mutable_time_limit()->set_nanos(5000);
   proto.set_diagnose(true);
   const auto options = FromProto(proto);
   ASSERT_TRUE(options.ok()) << options.status();
+  EXPECT_EQ(options->method, SolverMethod::kLevenbergMarquardt);
+  EXPECT_EQ(options->time_limit, absl::Seconds(2) + absl::Microseconds(5));
   EXPECT_EQ(options->max_iterations, 7);
   EXPECT_EQ(options->max_restarts, 3);
   EXPECT_EQ(options->restart_seed, -12345678901);
@@ -41,6 +45,8 @@ TEST(ConvertSolverTest, UnsetOptionsAreDefaults) {
   const auto options = FromProto(v1::SolverOptions());
   ASSERT_TRUE(options.ok());
   EXPECT_EQ(options->max_iterations, SolverOptions().max_iterations);
+  EXPECT_EQ(options->method, SolverMethod::kAuto);
+  EXPECT_EQ(options->time_limit, std::nullopt);
   EXPECT_EQ(options->max_restarts, std::nullopt);
   EXPECT_EQ(options->position_tolerance_m,
             SolverOptions().position_tolerance_m);
@@ -48,6 +54,19 @@ TEST(ConvertSolverTest, UnsetOptionsAreDefaults) {
   v1::SolverOptions again;
   ToProto(*options, &again);
   EXPECT_FALSE(again.has_max_restarts()) << "it depends on the start";
+}
+
+TEST(ConvertSolverTest, EveryMethodComesRound) {
+  for (int number = v1::SolverMethod_MIN; number <= v1::SolverMethod_MAX;
+       ++number) {
+    v1::SolverOptions proto;
+    proto.set_method(static_cast<v1::SolverMethod>(number));
+    const auto options = FromProto(proto);
+    ASSERT_TRUE(options.ok()) << options.status();
+    v1::SolverOptions again;
+    ToProto(*options, &again);
+    EXPECT_EQ(again.method(), number);
+  }
 }
 
 TEST(ConvertSolverTest, ZeroRestartsAreNotUnset) {
@@ -71,6 +90,8 @@ class ConvertReportTest : public ::testing::Test {
  protected:
   ConvertReportTest() {
     report_.outcome = SolveOutcome::kStalledAtLimits;
+    report_.method = SolverMethod::kMinimalChange;
+    report_.kkt_residual = 0.75;
     report_.iteration_count = 12;
     report_.restart_count = 3;
     report_.position_errors_m = {0.5, 0};
@@ -109,7 +130,8 @@ TEST_F(ConvertReportTest, BriefOnesSayOutcomeAndErrors) {
 
 TEST_F(ConvertReportTest, WholeOnesSayWhatMoved) {
   const v1::SolveReport proto = Told(ReportDetail::kWhole);
-  EXPECT_EQ(proto.method(), v1::SOLVER_METHOD_LEVENBERG_MARQUARDT);
+  EXPECT_EQ(proto.method(), v1::SOLVER_METHOD_MINIMAL_CHANGE);
+  EXPECT_EQ(proto.kkt_residual(), 0.75);
   EXPECT_THAT(proto.limited_joints(), ElementsAre(4, 7));
   EXPECT_EQ(proto.change(), 1.5);
   EXPECT_EQ(proto.rank(), 0);
@@ -134,6 +156,9 @@ TEST_F(ConvertReportTest, EveryOutcomeHasItsNumber) {
             v1::SolveReport::OUTCOME_UNREACHABLE);
   EXPECT_EQ(told(SolveOutcome::kStalledAtLimits),
             v1::SolveReport::OUTCOME_STALLED_AT_LIMITS);
+  EXPECT_EQ(told(SolveOutcome::kSingular), v1::SolveReport::OUTCOME_SINGULAR);
+  EXPECT_EQ(told(SolveOutcome::kTimeLimit),
+            v1::SolveReport::OUTCOME_TIME_LIMIT);
   EXPECT_EQ(told(SolveOutcome::kIterationLimit),
             v1::SolveReport::OUTCOME_ITERATION_LIMIT);
 }

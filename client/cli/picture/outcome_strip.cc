@@ -45,6 +45,8 @@ int Badness(const Answer& answer) {
     case SolveOutcome::kUnreachable:
       return 2;
     case SolveOutcome::kIterationLimit:
+    case SolveOutcome::kTimeLimit:
+    case SolveOutcome::kSingular:
       return 3;
   }
   return kKinds - 1;

@@ -65,6 +65,8 @@ absl::string_view OutcomeClass(SolveOutcome outcome) {
     case SolveOutcome::kUnreachable:
       return "unreachable";
     case SolveOutcome::kIterationLimit:
+    case SolveOutcome::kTimeLimit:
+    case SolveOutcome::kSingular:
       return "exhausted";
   }
   return kUnansweredClass;

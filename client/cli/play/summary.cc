@@ -17,7 +17,10 @@ void CountOutcome(SolveOutcome outcome, Summary& summary) {
     case SolveOutcome::kStalledAtLimits:
       ++summary.stalled_count;
       return;
+    // Gave up, be it for the number of iterations, the time or the method.
     case SolveOutcome::kIterationLimit:
+    case SolveOutcome::kTimeLimit:
+    case SolveOutcome::kSingular:
       ++summary.iteration_limit_count;
       return;
   }

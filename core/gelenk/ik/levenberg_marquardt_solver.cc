@@ -37,7 +37,8 @@ kernel::ChainFunction ChainFunctionFor(InstructionSet level) {
 
 kernel::Settings SettingsFor(const IkProblem& problem,
                              const kernel::TreeLayout& tree,
-                             const SolverOptions& options) {
+                             const SolverOptions& options,
+                             const StopCondition& stop) {
   kernel::Settings settings = {};
   const RigidTransform& base = problem.world_from_skeleton();
   const Eigen::Matrix3d rotation = base.rotation.toRotationMatrix();
@@ -54,6 +55,8 @@ kernel::Settings SettingsFor(const IkProblem& problem,
   settings.lower = tree.lower;
   settings.upper = tree.upper;
   settings.max_iterations = options.max_iterations;
+  settings.stop = stop.function;
+  settings.stop_context = stop.context;
   return settings;
 }
 
@@ -64,6 +67,8 @@ SolveOutcome OutcomeOf(const kernel::Attempt& attempt) {
     case kernel::AttemptEnd::kStationary:
       return attempt.pushed_at_limit ? SolveOutcome::kStalledAtLimits
                                      : SolveOutcome::kUnreachable;
+    case kernel::AttemptEnd::kStopped:
+      return SolveOutcome::kTimeLimit;
     default:
       return SolveOutcome::kIterationLimit;
   }
@@ -202,20 +207,22 @@ kernel::Attempt LevenbergMarquardtSolver::Run(const IkProblem& problem,
 void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
                                      const SolverOptions& options,
                                      SolveStart start, VectorView positions,
-                                     SolveReport& report) {
+                                     SolveReport& report,
+                                     const StopCondition& stop) {
   const kernel::TreeLayout tree = problem.tree().Layout();
   const Skeleton& skeleton = problem.skeleton();
   Reserve(problem, tree);
   std::copy(positions.begin(), positions.end(), start_.begin());
   ClampToLimits(skeleton, positions);
 
-  kernel::Settings settings = SettingsFor(problem, tree, options);
+  kernel::Settings settings = SettingsFor(problem, tree, options, stop);
   const int budget = RestartBudget(options, start);
   settings.impatient = budget > 0;
   kernel::Attempt attempt = Run(problem, tree, settings, positions);
   report.iteration_count = attempt.iterations;
   report.restart_count = 0;
-  if (attempt.end != kernel::AttemptEnd::kConverged && budget > 0) {
+  if (attempt.end != kernel::AttemptEnd::kConverged &&
+      attempt.end != kernel::AttemptEnd::kStopped && budget > 0) {
     attempt = Restart(problem, settings, budget, options.restart_seed, attempt,
                       positions, report);
   }
@@ -262,6 +269,7 @@ kernel::Attempt LevenbergMarquardtSolver::Restart(const IkProblem& problem,
   best_.assign(positions.begin(), positions.end());
   double best_energy = attempt.energy;
   while (attempt.end != kernel::AttemptEnd::kConverged &&
+         attempt.end != kernel::AttemptEnd::kStopped &&
          report.restart_count < budget) {
     ++report.restart_count;
     sampler.Sample(problem.skeleton(), moving_joints_, View(start_), positions);
@@ -273,7 +281,8 @@ kernel::Attempt LevenbergMarquardtSolver::Restart(const IkProblem& problem,
   }
   if (attempt.end != kernel::AttemptEnd::kConverged) {
     // Nothing reached: finish the best attempt with patience, so that it says
-    // whether the target is out of reach.
+    // whether the target is out of reach. Who was told to stop stops here
+    // again, at once.
     positions = View(best_);
     settings.impatient = false;
     settings.max_iterations *= kPolishFactor;

@@ -26,6 +26,7 @@
 #include "gelenk/ik/kernel/tree_layout.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
+#include "gelenk/ik/stop_condition.h"
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
@@ -42,7 +43,8 @@ class LevenbergMarquardtSolver {
   // Joints that move no goal stay where they are. Quaternions stay in the
   // hemisphere of the start. `options` must have passed CheckSolverOptions.
   void Solve(const IkProblem& problem, const SolverOptions& options,
-             SolveStart start, VectorView positions, SolveReport& report);
+             SolveStart start, VectorView positions, SolveReport& report,
+             const StopCondition& stop = {});
 
   InstructionSet instruction_set() const { return level_; }
 

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "gelenk/ik/solver_method.h"
+
 namespace gelenk {
 
 enum class SolveOutcome {
@@ -13,12 +15,18 @@ enum class SolveOutcome {
   kUnreachable,
   // Joints on their limits keep it from getting closer.
   kStalledAtLimits,
+  // The Jacobian lost rank and the method cannot go on; the pose so far.
+  kSingular,
   // Iterations and restarts used up.
   kIterationLimit,
+  // Told to stop; the best pose so far.
+  kTimeLimit,
 };
 
 struct SolveReport {
   SolveOutcome outcome = SolveOutcome::kConverged;
+  // What ran; never kAuto.
+  SolverMethod method = SolverMethod::kLevenbergMarquardt;
   int iteration_count = 0;
   int restart_count = 0;
   // Per goal, in order of the problem: distance to the target along the axes
@@ -31,6 +39,10 @@ struct SolveReport {
   std::vector<int> limited_joints;
   // Length of the change from the start in the stiffness metric.
   double change = 0;
+  // Minimal change only: how far the result is from the nearest solution as far
+  // as the Jacobian shows, the length of (I - J^+ J)(q_old - q) in the metric
+  // of `change`. 0 for other methods.
+  double kkt_residual = 0;
 
   // From here on only with ReportDetail::kDiagnosis.
   // Rank of the task Jacobian at the result, its singular values cut off at

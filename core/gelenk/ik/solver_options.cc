@@ -41,6 +41,11 @@ absl::Status CheckSolverOptions(const SolverOptions& options) {
                  violations);
   CheckTolerance("rotation_tolerance_rad", options.rotation_tolerance_rad,
                  violations);
+  if (options.time_limit && !(*options.time_limit > absl::ZeroDuration())) {
+    violations.Add("time_limit",
+                   absl::StrCat("want more than 0, got ",
+                                absl::FormatDuration(*options.time_limit)));
+  }
   return violations.ToStatus();
 }
 

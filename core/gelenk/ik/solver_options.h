@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "absl/status/status.h"
+#include "absl/time/time.h"
+#include "gelenk/ik/solver_method.h"
 
 namespace gelenk {
 
@@ -24,6 +26,7 @@ enum class ReportDetail {
 };
 
 struct SolverOptions {
+  SolverMethod method = SolverMethod::kAuto;
   // Per attempt. When no restart converges the best pose gets one more attempt,
   // with four times as many.
   int max_iterations = 50;
@@ -36,6 +39,9 @@ struct SolverOptions {
   double position_tolerance_m = 1e-4;
   double rotation_tolerance_rad = 1e-3;
   ReportDetail detail = ReportDetail::kWhole;
+  // An interactive guard, honoured where the solver was given a clock. Answers
+  // that hit it do not repeat.
+  std::optional<absl::Duration> time_limit;
 };
 
 inline constexpr int kColdRestarts = 40;

@@ -72,6 +72,18 @@ TEST(SolverOptionsTest, TolerancesArePositive) {
   }
 }
 
+TEST(SolverOptionsTest, TimeLimitsArePositive) {
+  SolverOptions options;
+  options.time_limit = absl::Nanoseconds(1);
+  EXPECT_THAT(Lines(options), IsEmpty());
+  options.time_limit = absl::ZeroDuration();
+  EXPECT_THAT(Lines(options),
+              ElementsAre("time_limit: want more than 0, got 0"));
+  options.time_limit = absl::Milliseconds(-3);
+  EXPECT_THAT(Lines(options),
+              ElementsAre("time_limit: want more than 0, got -3ms"));
+}
+
 TEST(SolverOptionsTest, OnlyColdStartsRestartUnlessTold) {
   SolverOptions options;
   EXPECT_EQ(RestartBudget(options, SolveStart::kWarm), 0);

@@ -16,7 +16,7 @@ namespace {
 using ::testing::ElementsAre;
 
 WorkerPool::Work Doing(std::function<void()> work) {
-  return [work = std::move(work)](LevenbergMarquardtSolver&) { work(); };
+  return [work = std::move(work)](IkSolver&) { work(); };
 }
 
 TEST(WorkerPoolTest, RunsWhatWaitsInOrderBeforeItGoes) {
@@ -53,11 +53,11 @@ TEST(WorkerPoolTest, RefusesMoreThanMayWait) {
 TEST(WorkerPoolTest, GivesEachThreadItsSolver) {
   constexpr int kThreads = 3;
   absl::Mutex mutex;
-  std::set<LevenbergMarquardtSolver*> solvers;
+  std::set<IkSolver*> solvers;
   {
     WorkerPool pool(kThreads, 100, InstructionSet::kBaseline);
     for (int i = 0; i < kThreads; ++i) {
-      ASSERT_TRUE(pool.Submit([&](LevenbergMarquardtSolver& solver) {
+      ASSERT_TRUE(pool.Submit([&](IkSolver& solver) {
         EXPECT_EQ(solver.instruction_set(), InstructionSet::kBaseline);
         const auto all_here = [&solvers] { return solvers.size() == kThreads; };
         absl::MutexLock lock(&mutex);

@@ -181,7 +181,7 @@ TEST_P(SessionFaultTest, ChangesNothing) {
   EXPECT_EQ(ContentsOf(*session), before);
 
   // Not even what the next answer says.
-  LevenbergMarquardtSolver solver;
+  IkSolver solver;
   SolvedFrame solved;
   ASSERT_TRUE(session->Solve(kDriver, solver, true, solved).ok());
   const auto other = DrivenSession();

@@ -23,7 +23,7 @@ absl::StatusCode ApplyAs(Session& session, DriverId driver) {
 }
 
 absl::StatusCode SolveAs(Session& session, DriverId driver) {
-  LevenbergMarquardtSolver solver;
+  IkSolver solver;
   SolvedFrame solved;
   return session.Solve(driver, solver, true, solved).code();
 }

@@ -65,7 +65,7 @@ size_t BytesPerSession(
     const std::vector<Goal>& goals) {
   uint64_t random = 0;
   SessionRegistry registry(2 * kSessionCount, [&random] { return ++random; });
-  LevenbergMarquardtSolver solver;
+  IkSolver solver;
   SolvedFrame solved;
   size_t counted = 0;
   const auto open = [&] {

@@ -27,7 +27,7 @@ std::shared_ptr<Session> DrivenSession() {
 }
 
 Eigen::VectorXd SolveFrame(Session& session, InputFrame frame) {
-  LevenbergMarquardtSolver solver;
+  IkSolver solver;
   SolvedFrame solved;
   EXPECT_TRUE(session.Apply(kDriver, frame, kNow).ok());
   EXPECT_TRUE(session.Solve(kDriver, solver, false, solved).ok());

@@ -38,7 +38,7 @@ class SessionSolveTest : public ::testing::Test {
     return Solve();
   }
 
-  LevenbergMarquardtSolver solver_;
+  IkSolver solver_;
   std::shared_ptr<Session> session_;
 };
 
@@ -64,7 +64,7 @@ TEST_F(SessionSolveTest, AnswersBitByBitTheSame) {
     InputFrame frame = WholeFrame(i, 1.0 - 0.03 * i, 0.02 * i);
     ASSERT_TRUE(other->Apply(kDriver, frame, kNow).ok());
     SolvedFrame there;
-    LevenbergMarquardtSolver fresh;
+    IkSolver fresh;
     ASSERT_TRUE(other->Solve(kDriver, fresh, false, there).ok());
     ASSERT_EQ(here.positions, there.positions) << "frame " << i;
   }

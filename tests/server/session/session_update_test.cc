@@ -53,7 +53,7 @@ TEST(SessionUpdateTest, TakesAChangeOfTheRevisionItSaw) {
 TEST(SessionUpdateTest, RevisionsCountEverythingButThePose) {
   const auto session = ArmSession(kNow);
   const int64_t revision = session->Snapshot().revision;
-  LevenbergMarquardtSolver solver;
+  IkSolver solver;
   SolvedFrame solved;
   ASSERT_TRUE(session->Solve(kUnaryDriver, solver, true, solved).ok());
   EXPECT_EQ(session->Snapshot().revision, revision);

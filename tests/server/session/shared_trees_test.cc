@@ -65,7 +65,7 @@ TEST(SharedTreesTest, AProblemOutlivesThem) {
   auto trees = ArmTrees();
   const IkProblem problem = trees->CreateProblem(ArmGoals()).value();
   trees.reset();
-  LevenbergMarquardtSolver solver;
+  IkSolver solver;
   SolveReport report;
   Eigen::VectorXd positions = Eigen::Vector3d(0.1, 0.2, 0.3);
   solver.Solve(problem, {}, SolveStart::kWarm, positions, report);

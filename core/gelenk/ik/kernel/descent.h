@@ -75,6 +75,10 @@ GELENK_INLINE Attempt Descend(Model& model, const Settings& settings,
       }
     }
     if (iteration >= settings.max_iterations) break;
+    if (settings.stop != nullptr && settings.stop(settings.stop_context)) {
+      attempt.end = AttemptEnd::kStopped;
+      break;
+    }
     if (iteration % kWindow == 0) {
       if (iteration > 0) {
         if (settings.impatient && best > kImpatientGain * window_energy) {

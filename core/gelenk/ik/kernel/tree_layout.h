@@ -149,9 +149,18 @@ struct Settings {
   // Give up as soon as a window of iterations does not halve the error: there
   // are other starts to try.
   bool impatient;
+  // Asked once an iteration; see StopCondition. May be null.
+  bool (*stop)(const void* context);
+  const void* stop_context;
 };
 
-enum class AttemptEnd { kConverged, kStationary, kImpatient, kIterations };
+enum class AttemptEnd {
+  kConverged,
+  kStationary,
+  kImpatient,
+  kIterations,
+  kStopped,
+};
 
 struct Attempt {
   AttemptEnd end;

@@ -1,0 +1,56 @@
+#include "gelenk/ik/ik_solver.h"
+
+#include "absl/strings/str_cat.h"
+#include "gelenk/base/violations.h"
+#include "gelenk/ik/solver_method.h"
+#include "gelenk/ik/stop_condition.h"
+
+namespace gelenk {
+namespace {
+
+// What kAuto stands for.
+SolverMethod Choose(const SolverOptions& options) {
+  return options.method == SolverMethod::kAuto
+             ? SolverMethod::kLevenbergMarquardt
+             : options.method;
+}
+
+struct Deadline {
+  IkSolver::Clock clock;
+  absl::Duration end;
+
+  static bool IsOver(const void* context) {
+    const Deadline& deadline = *static_cast<const Deadline*>(context);
+    return deadline.clock() >= deadline.end;
+  }
+};
+
+}  // namespace
+
+IkSolver::IkSolver(InstructionSet level, Clock clock)
+    : clock_(clock), levenberg_marquardt_(level) {}
+
+absl::Status IkSolver::Check(const IkProblem&, const SolverOptions& options) {
+  const SolverMethod method = Choose(options);
+  if (method == SolverMethod::kLevenbergMarquardt) return absl::OkStatus();
+  Violations violations;
+  violations.Add("method",
+                 absl::StrCat(SolverMethodName(method), " is not offered"));
+  return violations.ToStatus();
+}
+
+void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
+                     SolveStart start, VectorView positions,
+                     SolveReport& report) {
+  Deadline deadline;
+  StopCondition stop;
+  if (options.time_limit && clock_ != nullptr) {
+    deadline = {clock_, clock_() + *options.time_limit};
+    stop = {&Deadline::IsOver, &deadline};
+  }
+  report.method = SolverMethod::kLevenbergMarquardt;
+  report.kkt_residual = 0;
+  levenberg_marquardt_.Solve(problem, options, start, positions, report, stop);
+}
+
+}  // namespace gelenk
