@@ -1,79 +1,18 @@
 #include "convert/goal.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "convert/geometry.h"
+#include "convert/goal_kind.h"
 #include "gelenk/base/violations.h"
 
 namespace gelenk::convert {
 namespace {
-
-AxisMask MaskFromProto(bool has_mask, const v1::AxisMask& proto) {
-  if (!has_mask) return {};
-  return {proto.x(), proto.y(), proto.z()};
-}
-
-void MaskToProto(const AxisMask& mask, v1::AxisMask* proto) {
-  proto->set_x(mask.x);
-  proto->set_y(mask.y);
-  proto->set_z(mask.z);
-}
-
-bool IsWhole(const AxisMask& mask) { return mask.x && mask.y && mask.z; }
-
-PositionGoal FromProto(const v1::PositionGoal& proto) {
-  return {proto.end_effector_id(), convert::FromProto(proto.world_position()),
-          MaskFromProto(proto.has_axes(), proto.axes())};
-}
-
-RotationGoal FromProto(const v1::RotationGoal& proto) {
-  RotationGoal goal;
-  goal.end_effector_id = proto.end_effector_id();
-  if (proto.has_world_rotation()) {
-    goal.world_rotation = convert::FromProto(proto.world_rotation());
-  }
-  return goal;
-}
-
-PoseGoal FromProto(const v1::PoseGoal& proto) {
-  PoseGoal goal;
-  goal.end_effector_id = proto.end_effector_id();
-  goal.world_pose = convert::FromProto(proto.world_pose());
-  if (proto.has_rotation_scale_m_per_rad()) {
-    goal.rotation_scale_m_per_rad = proto.rotation_scale_m_per_rad();
-  }
-  goal.axes = MaskFromProto(proto.has_axes(), proto.axes());
-  return goal;
-}
-
-void KindToProto(const PositionGoal& goal, v1::Goal* proto) {
-  v1::PositionGoal* out = proto->mutable_position();
-  out->set_end_effector_id(goal.end_effector_id);
-  ToProto(goal.world_position, out->mutable_world_position());
-  if (!IsWhole(goal.axes)) MaskToProto(goal.axes, out->mutable_axes());
-}
-
-void KindToProto(const RotationGoal& goal, v1::Goal* proto) {
-  v1::RotationGoal* out = proto->mutable_rotation();
-  out->set_end_effector_id(goal.end_effector_id);
-  ToProto(goal.world_rotation, out->mutable_world_rotation());
-}
-
-void KindToProto(const PoseGoal& goal, v1::Goal* proto) {
-  v1::PoseGoal* out = proto->mutable_pose();
-  out->set_end_effector_id(goal.end_effector_id);
-  ToProto(goal.world_pose, out->mutable_world_pose());
-  out->set_rotation_scale_m_per_rad(goal.rotation_scale_m_per_rad);
-  if (!IsWhole(goal.axes)) MaskToProto(goal.axes, out->mutable_axes());
-}
-
-// The kinds whose conversion is still to be written.
-template <class Kind>
-void KindToProto(const Kind&, v1::Goal*) {}
 
 absl::Status NoKind(const v1::Goal& proto) {
   Violations violations;
@@ -92,23 +31,14 @@ std::vector<Goal>::iterator FindGoal(std::vector<Goal>& goals,
 }  // namespace
 
 absl::StatusOr<Goal> FromProto(const v1::Goal& proto) {
+  std::optional<GoalKind> kind = KindFromProto(proto);
+  if (!kind) return NoKind(proto);
   Goal goal;
   goal.id = proto.goal_id();
   if (proto.has_weight()) goal.weight = proto.weight();
-  switch (proto.kind_case()) {
-    case v1::Goal::kPosition:
-      goal.kind = FromProto(proto.position());
-      return goal;
-    case v1::Goal::kRotation:
-      goal.kind = FromProto(proto.rotation());
-      return goal;
-    case v1::Goal::kPose:
-      goal.kind = FromProto(proto.pose());
-      return goal;
-    default:
-      break;
-  }
-  return NoKind(proto);
+  goal.priority = proto.priority();
+  goal.kind = *std::move(kind);
+  return goal;
 }
 
 absl::StatusOr<std::vector<Goal>> FromProto(
@@ -128,8 +58,8 @@ absl::StatusOr<std::vector<Goal>> FromProto(
 void ToProto(const Goal& goal, v1::Goal* proto) {
   proto->set_goal_id(goal.id);
   proto->set_weight(goal.weight);
-  std::visit([proto](const auto& kind) { KindToProto(kind, proto); },
-             goal.kind);
+  proto->set_priority(goal.priority);
+  KindToProto(goal.kind, proto);
 }
 
 void ToProto(absl::Span<const Goal> goals,
@@ -149,7 +79,20 @@ absl::Status FromProto(const v1::GoalTarget& proto, GoalTarget* target) {
     case v1::GoalTarget::kWorldPose:
       *target = FromProto(proto.world_pose());
       return absl::OkStatus();
-    default:
+    case v1::GoalTarget::kReferenceFromEndEffector:
+      *target = FromProto(proto.reference_from_end_effector());
+      return absl::OkStatus();
+    case v1::GoalTarget::kPosture: {
+      const auto& positions = proto.posture().positions();
+      *target = Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+          positions.data(), positions.size()));
+      return absl::OkStatus();
+    }
+    case v1::GoalTarget::kPlane:
+      *target =
+          Plane{FromProto(proto.plane().normal()), proto.plane().offset_m()};
+      return absl::OkStatus();
+    case v1::GoalTarget::TARGET_NOT_SET:
       break;
   }
   Violations violations;

@@ -25,7 +25,8 @@ void ToProto(const Goal& goal, v1::Goal* proto);
 void ToProto(absl::Span<const Goal> goals,
              google::protobuf::RepeatedPtrField<v1::Goal>* protos);
 
-// The hot path: allocates nothing. INVALID_ARGUMENT when no target is set.
+// The hot path: allocates nothing but for a posture. INVALID_ARGUMENT when no
+// target is set.
 absl::Status FromProto(const v1::GoalTarget& proto, GoalTarget* target);
 
 // `goals` with `patch` merged in by id; existing goals keep their places, and

@@ -1,6 +1,7 @@
 #include "convert/goal.h"
 
 #include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -56,6 +57,42 @@ v1::Goal PoseMessage(const std::string& id) {
   return proto;
 }
 
+v1::Goal Parse(const std::string& text) {
+  v1::Goal proto;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &proto));
+  return proto;
+}
+
+// One of each of the kinds beyond position, rotation and pose.
+std::vector<v1::Goal> OtherKinds() {
+  std::vector<v1::Goal> goals;
+  for (const char* kind : {
+           "rotation { end_effector_id: 'a' world_rotation { w: 1 } axes { y: "
+           "true } }",
+           "pose { end_effector_id: 'a' world_pose { translation { x: 1 } "
+           "rotation { w: 1 } } rotation_scale_m_per_rad: 1 rotation_axes { x: "
+           "true } }",
+           "aim { end_effector_id: 'a' axis { x: 1 } world_point { y: 2 } }",
+           "pole { root_joint_id: 'r' mid_joint_id: 'm' tip_joint_id: 't' "
+           "world_point { z: 3 } }",
+           "relative { reference_end_effector_id: 'r' end_effector_id: 'a' "
+           "reference_from_end_effector { translation { x: 1 } rotation { w: 1 "
+           "} } rotation_scale_m_per_rad: 0.5 }",
+           "center_of_mass { world_position { x: 1 } axes { x: true z: true } "
+           "}",
+           "posture { pose { positions: 0.5 positions: -2 } joint_weights: 1 "
+           "joint_weights: 0 }",
+           "half_space { end_effector_id: 'a' plane { normal { y: 1 } "
+           "offset_m: -0.5 } }",
+           "half_space { end_effector_id: 'a' }",
+           "plant { end_effector_id: 'a' rotation_scale_m_per_rad: 0 }",
+       }) {
+    goals.push_back(
+        Parse(std::string("goal_id: 'g' weight: 2 priority: 3 ") + kind));
+  }
+  return goals;
+}
+
 std::vector<std::string> Ids(const std::vector<Goal>& goals) {
   std::vector<std::string> ids;
   for (const Goal& goal : goals) ids.push_back(goal.id);
@@ -63,6 +100,51 @@ std::vector<std::string> Ids(const std::vector<Goal>& goals) {
 }
 
 // --- Goals ---
+
+TEST(ConvertGoalTest, EveryOtherKindComesRound) {
+  for (const v1::Goal& proto : OtherKinds()) {
+    const auto goal = FromProto(proto);
+    ASSERT_TRUE(goal.ok()) << goal.status();
+    EXPECT_EQ(goal->priority, 3);
+    v1::Goal again;
+    ToProto(*goal, &again);
+    EXPECT_EQ(again.DebugString(), proto.DebugString());
+  }
+}
+
+TEST(ConvertGoalTest, UnsetPartsOfOtherKindsMeanDefaults) {
+  const auto aim = std::get<AimGoal>(FromProto(Parse("aim {}"))->kind);
+  EXPECT_EQ(aim.axis, Eigen::Vector3d::UnitZ());
+  const auto plant = std::get<PlantGoal>(FromProto(Parse("plant {}"))->kind);
+  EXPECT_EQ(plant.rotation_scale_m_per_rad, 1);
+  const auto ground =
+      std::get<HalfSpaceGoal>(FromProto(Parse("half_space {}"))->kind);
+  EXPECT_TRUE(ground.is_ground);
+  const auto rotation =
+      std::get<RotationGoal>(FromProto(Parse("rotation {}"))->kind);
+  EXPECT_EQ(rotation.axes.count(), 3);
+}
+
+TEST(ConvertGoalTest, EveryTargetHasItsForm) {
+  const auto read = [](const std::string& text) {
+    v1::GoalTarget proto;
+    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &proto));
+    GoalTarget target;
+    EXPECT_TRUE(FromProto(proto, &target).ok());
+    return target;
+  };
+  EXPECT_EQ(std::get<RigidTransform>(
+                read("reference_from_end_effector { translation { x: 2 } }"))
+                .translation.x(),
+            2);
+  EXPECT_EQ(
+      std::get<Eigen::VectorXd>(read("posture { positions: 1 positions: 2 }")),
+      Eigen::Vector2d(1, 2));
+  const Plane plane =
+      std::get<Plane>(read("plane { normal { z: 1 } offset_m: 4 }"));
+  EXPECT_EQ(plane.world_normal, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(plane.offset_m, 4);
+}
 
 TEST(ConvertGoalTest, EveryKindComesRound) {
   for (const v1::Goal& proto :

@@ -15,53 +15,90 @@ Goals::iterator Find(Goals& goals, const std::string& goal_id) {
       [&goal_id](const v1::Goal& goal) { return goal.goal_id() == goal_id; });
 }
 
-bool Fits(const v1::GoalTarget& target, const v1::Goal& goal) {
+// The point of the kinds that have one, null otherwise.
+v1::Vector3* MutablePoint(v1::Goal& goal) {
+  switch (goal.kind_case()) {
+    case v1::Goal::kPosition:
+      return goal.mutable_position()->mutable_world_position();
+    case v1::Goal::kAim:
+      return goal.mutable_aim()->mutable_world_point();
+    case v1::Goal::kPole:
+      return goal.mutable_pole()->mutable_world_point();
+    case v1::Goal::kCenterOfMass:
+      return goal.mutable_center_of_mass()->mutable_world_position();
+    default:
+      return nullptr;
+  }
+}
+
+// False when `target` does not fit the kind of `goal`, which then is as before.
+bool ReplaceTarget(const v1::GoalTarget& target, v1::Goal& goal) {
   switch (target.target_case()) {
-    case v1::GoalTarget::kWorldPosition:
-      return goal.has_position();
+    case v1::GoalTarget::kWorldPosition: {
+      v1::Vector3* point = MutablePoint(goal);
+      if (point != nullptr) *point = target.world_position();
+      return point != nullptr;
+    }
     case v1::GoalTarget::kWorldRotation:
-      return goal.has_rotation();
+      if (!goal.has_rotation()) return false;
+      *goal.mutable_rotation()->mutable_world_rotation() =
+          target.world_rotation();
+      return true;
     case v1::GoalTarget::kWorldPose:
-      return goal.has_pose();
+      if (!goal.has_pose()) return false;
+      *goal.mutable_pose()->mutable_world_pose() = target.world_pose();
+      return true;
+    case v1::GoalTarget::kReferenceFromEndEffector:
+      if (!goal.has_relative()) return false;
+      *goal.mutable_relative()->mutable_reference_from_end_effector() =
+          target.reference_from_end_effector();
+      return true;
+    case v1::GoalTarget::kPosture:
+      if (!goal.has_posture()) return false;
+      *goal.mutable_posture()->mutable_pose() = target.posture();
+      return true;
+    case v1::GoalTarget::kPlane:
+      if (!goal.has_half_space()) return false;
+      *goal.mutable_half_space()->mutable_plane() = target.plane();
+      return true;
     case v1::GoalTarget::TARGET_NOT_SET:
       break;
   }
-  return false;
+  return true;
 }
 
 void ApplyTarget(const v1::GoalTarget& target, v1::Goal* goal) {
-  const bool is_weight_alone =
-      target.target_case() == v1::GoalTarget::TARGET_NOT_SET;
-  if (!is_weight_alone && !Fits(target, *goal)) return;
+  if (!ReplaceTarget(target, *goal)) return;
   if (target.has_weight()) goal->set_weight(target.weight());
-  if (is_weight_alone) return;
-  if (goal->has_position()) {
-    *goal->mutable_position()->mutable_world_position() =
-        target.world_position();
-  } else if (goal->has_rotation()) {
-    *goal->mutable_rotation()->mutable_world_rotation() =
-        target.world_rotation();
-  } else {
-    *goal->mutable_pose()->mutable_world_pose() = target.world_pose();
-  }
 }
 
 double WeightOf(const v1::Goal& goal) {
   return goal.has_weight() ? goal.weight() : 1;
 }
 
-// Says aloud what unset fields mean.
+// Says aloud what unset fields mean. A goal without a target says its weight: a
+// plant, a half-space above the ground.
 void StateTarget(const v1::Goal& goal, v1::GoalTarget* target) {
-  if (goal.has_position()) {
-    *target->mutable_world_position() = goal.position().world_position();
+  v1::Goal copy = goal;
+  if (const v1::Vector3* point = MutablePoint(copy)) {
+    *target->mutable_world_position() = *point;
   } else if (goal.has_rotation()) {
     if (goal.rotation().has_world_rotation()) {
       *target->mutable_world_rotation() = goal.rotation().world_rotation();
     } else {
       target->mutable_world_rotation()->set_w(1);
     }
-  } else {
+  } else if (goal.has_pose()) {
     *target->mutable_world_pose() = goal.pose().world_pose();
+  } else if (goal.has_relative()) {
+    *target->mutable_reference_from_end_effector() =
+        goal.relative().reference_from_end_effector();
+  } else if (goal.has_posture()) {
+    *target->mutable_posture() = goal.posture().pose();
+  } else if (goal.half_space().has_plane()) {
+    *target->mutable_plane() = goal.half_space().plane();
+  } else {
+    target->set_weight(WeightOf(goal));
   }
 }
 

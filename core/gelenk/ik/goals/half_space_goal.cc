@@ -17,12 +17,15 @@ void CheckAndNormalize(Plane& plane, Violations& violations) {
 void CheckAndNormalize(HalfSpaceGoal& goal, Violations& violations) {
   Plane plane = TargetOf(goal);
   CheckAndNormalize(plane, violations);
-  Retarget(goal, plane);
+  goal.world_normal = plane.world_normal;
 }
 
 void CheckOn(const Skeleton& skeleton, HalfSpaceGoal& goal,
              Violations& violations) {
   CheckEffector(skeleton, "end_effector_id", goal.end_effector_id, violations);
+  if (!goal.is_ground) return;
+  goal.world_normal = skeleton.up();
+  goal.offset_m = 0;
 }
 
 }  // namespace gelenk

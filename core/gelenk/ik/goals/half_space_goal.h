@@ -25,6 +25,9 @@ struct HalfSpaceGoal {
   // As in Plane.
   Eigen::Vector3d world_normal = Eigen::Vector3d::UnitY();
   double offset_m = 0;
+  // The plane is the ground: through the world's origin, normal to the
+  // skeleton's up. CheckOn puts it in the place of what stands above.
+  bool is_ground = false;
 };
 
 inline absl::string_view KindName(const HalfSpaceGoal&) { return "half_space"; }
@@ -37,6 +40,7 @@ inline Plane TargetOf(const HalfSpaceGoal& goal) {
 inline void Retarget(HalfSpaceGoal& goal, const Plane& target) {
   goal.world_normal = target.world_normal;
   goal.offset_m = target.offset_m;
+  goal.is_ground = false;
 }
 
 void CheckAndNormalize(Plane& plane, Violations& violations);
