@@ -28,6 +28,7 @@ struct Command {
 };
 
 // Each adds its options to `app`; `run` is for when it was parsed.
+Command AddBenchCommand(CLI::App& app);
 Command AddInfoCommand(CLI::App& app);
 Command AddFkCommand(CLI::App& app);
 Command AddIkCommand(CLI::App& app);

@@ -66,9 +66,9 @@ int main(int argc, char** argv) {
   app.footer(kExamples);
   app.fallthrough();
   app.require_subcommand(1);
-  const std::vector<Command> commands = {AddInfoCommand(app), AddFkCommand(app),
-                                         AddIkCommand(app), AddPlayCommand(app),
-                                         AddSessionsCommand(app)};
+  const std::vector<Command> commands = {
+      AddInfoCommand(app), AddFkCommand(app),       AddIkCommand(app),
+      AddPlayCommand(app), AddSessionsCommand(app), AddBenchCommand(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,4 +1,5 @@
 # ./dev bench [name]: the benchmark programs whose name contains `name`.
+need_packages "benchmarks beside other solvers" liborocos-kdl-dev
 configure release
 build release
 mapfile -t programs < <(find build/release -name "*${1:-}*_benchmark" \
