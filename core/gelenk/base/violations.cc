@@ -1,7 +1,6 @@
 #include "gelenk/base/violations.h"
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/strings/cord.h"
@@ -12,7 +11,6 @@ namespace gelenk {
 namespace {
 
 constexpr absl::string_view kPayloadUrl = "type.gelenk.dev/violations";
-// A malformed megabyte must not become a megabyte of message.
 constexpr size_t kMaxListed = 20;
 constexpr char kRecordEnd = '\x1e';
 constexpr char kFieldEnd = '\x1f';
@@ -25,17 +23,20 @@ std::string Join(absl::string_view parent, absl::string_view child) {
 }  // namespace
 
 void Violations::Add(absl::string_view field, absl::string_view description) {
+  if (list_.size() == kMaxListed) {
+    ++dropped_;
+    return;
+  }
   list_.push_back({std::string(field), std::string(description)});
 }
 
 void Violations::AddStatus(absl::string_view field,
                            const absl::Status& status) {
   if (status.ok()) return;
-  std::vector<Violation> inner = FromStatus(status);
+  const std::vector<Violation> inner = FromStatus(status);
   if (inner.empty()) Add(field, status.message());
-  for (Violation& violation : inner) {
-    list_.push_back(
-        {Join(field, violation.field), std::move(violation.description)});
+  for (const Violation& violation : inner) {
+    Add(Join(field, violation.field), violation.description);
   }
 }
 
@@ -43,16 +44,13 @@ absl::Status Violations::ToStatus() const {
   if (list_.empty()) return absl::OkStatus();
   std::string message;
   std::string payload;
-  for (size_t i = 0; i < list_.size() && i < kMaxListed; ++i) {
-    const Violation& violation = list_[i];
-    absl::StrAppend(&message, i > 0 ? "; " : "", violation.field,
+  for (const Violation& violation : list_) {
+    absl::StrAppend(&message, message.empty() ? "" : "; ", violation.field,
                     violation.field.empty() ? "" : ": ", violation.description);
     absl::StrAppend(&payload, violation.field, std::string(1, kFieldEnd),
                     violation.description, std::string(1, kRecordEnd));
   }
-  if (list_.size() > kMaxListed) {
-    absl::StrAppend(&message, "; and ", list_.size() - kMaxListed, " more");
-  }
+  if (dropped_ > 0) absl::StrAppend(&message, "; and ", dropped_, " more");
   absl::Status status = absl::InvalidArgumentError(message);
   status.SetPayload(kPayloadUrl, absl::Cord(payload));
   return status;

@@ -3,6 +3,7 @@
 #ifndef GELENK_BASE_VIOLATIONS_H_
 #define GELENK_BASE_VIOLATIONS_H_
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,9 @@ struct Violation {
   std::string description;
 };
 
-// Cost: nothing is allocated while nothing is wrong.
+// Keeps the first twenty and counts the rest: a malformed megabyte must become
+// neither a megabyte of message nor of memory. Cost: nothing is allocated while
+// nothing is wrong.
 class Violations {
  public:
   void Add(absl::string_view field, absl::string_view description);
@@ -28,8 +31,8 @@ class Violations {
 
   bool empty() const { return list_.empty(); }
 
-  // OK when empty; else INVALID_ARGUMENT whose message lists all and whose
-  // payload carries them for FromStatus.
+  // OK when empty; else INVALID_ARGUMENT whose message lists those kept, and
+  // whose payload carries them for FromStatus.
   absl::Status ToStatus() const;
 
   // The violations that ToStatus packed into `status`; empty when it has none.
@@ -37,6 +40,7 @@ class Violations {
 
  private:
   std::vector<Violation> list_;
+  size_t dropped_ = 0;
 };
 
 }  // namespace gelenk
