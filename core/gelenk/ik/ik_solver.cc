@@ -30,9 +30,21 @@ struct Deadline {
 IkSolver::IkSolver(InstructionSet level, Clock clock)
     : clock_(clock), levenberg_marquardt_(level) {}
 
-absl::Status IkSolver::Check(const IkProblem&, const SolverOptions& options) {
+absl::Status IkSolver::Check(const IkProblem& problem,
+                             const SolverOptions& options) {
   const SolverMethod method = Choose(options);
-  if (method == SolverMethod::kLevenbergMarquardt) return absl::OkStatus();
+  switch (method) {
+    case SolverMethod::kAuto:
+    case SolverMethod::kLevenbergMarquardt:
+      return absl::OkStatus();
+    case SolverMethod::kNewton:
+    case SolverMethod::kPseudoInverse:
+    case SolverMethod::kMinimalChange:
+      return NewtonSolver::Check(problem, method);
+    case SolverMethod::kTwoLink:
+    case SolverMethod::kFabrik:
+      break;
+  }
   Violations violations;
   violations.Add("method",
                  absl::StrCat(SolverMethodName(method), " is not offered"));
@@ -48,9 +60,19 @@ void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
     deadline = {clock_, clock_() + *options.time_limit};
     stop = {&Deadline::IsOver, &deadline};
   }
-  report.method = SolverMethod::kLevenbergMarquardt;
+  report.method = Choose(options);
   report.kkt_residual = 0;
-  levenberg_marquardt_.Solve(problem, options, start, positions, report, stop);
+  switch (report.method) {
+    case SolverMethod::kNewton:
+      return newton_.Solve(problem, options, positions, report, stop);
+    case SolverMethod::kPseudoInverse:
+      return pseudo_inverse_.Solve(problem, options, positions, report, stop);
+    case SolverMethod::kMinimalChange:
+      return minimal_change_.Solve(problem, options, positions, report, stop);
+    default:
+      return levenberg_marquardt_.Solve(problem, options, start, positions,
+                                        report, stop);
+  }
 }
 
 }  // namespace gelenk

@@ -2,8 +2,8 @@
 //
 // Owns a solver of each method, made when it is first needed, and with it their
 // working memory. Not thread-safe: one per thread. Deterministic unless a time
-// limit strikes. Allocates nothing once the solver of a method has seen a
-// problem of that size.
+// limit strikes. Levenberg-Marquardt allocates nothing once it has seen a
+// problem of that size; the others say for themselves.
 #ifndef GELENK_IK_IK_SOLVER_H_
 #define GELENK_IK_IK_SOLVER_H_
 
@@ -12,6 +12,7 @@
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/instruction_set.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/ik/newton_solver.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
 #include "gelenk/skeleton/pose.h"
@@ -47,6 +48,9 @@ class IkSolver {
  private:
   Clock clock_;
   LevenbergMarquardtSolver levenberg_marquardt_;
+  NewtonSolver newton_{SolverMethod::kNewton};
+  NewtonSolver pseudo_inverse_{SolverMethod::kPseudoInverse};
+  NewtonSolver minimal_change_{SolverMethod::kMinimalChange};
 };
 
 }  // namespace gelenk

@@ -6,6 +6,7 @@
 
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/kinematics/jacobian.h"
+#include "gelenk/math/pseudo_inverse.h"
 
 namespace gelenk {
 namespace {

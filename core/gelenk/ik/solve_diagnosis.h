@@ -11,17 +11,13 @@
 
 namespace gelenk {
 
-// Singular values of the task Jacobian below this part of the largest count as
-// zero.
-inline constexpr double kRankCutoff = 1e-9;
-
 // sqrt(sum over degrees of freedom of stiffness * change^2) between two poses;
 // `change` (size velocity_count) receives their difference.
 double WeightedChange(const IkProblem& problem, const ConstVectorView& from,
                       const ConstVectorView& to, VectorView change);
 
-// Fills rank, free_velocity_count and the manipulabilities of `report`. Takes
-// the unweighted rows of all goals that are on. Allocates.
+// Fills rank (see kRankCutoff), free_velocity_count and the manipulabilities of
+// `report`. Takes the unweighted rows of all goals that are on. Allocates.
 void Diagnose(const IkProblem& problem, const ConstVectorView& positions,
               SolveReport& report);
 

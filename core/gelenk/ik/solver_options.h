@@ -3,8 +3,10 @@
 #ifndef GELENK_IK_SOLVER_OPTIONS_H_
 #define GELENK_IK_SOLVER_OPTIONS_H_
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/time/time.h"
@@ -25,6 +27,13 @@ enum class ReportDetail {
   kDiagnosis,
 };
 
+// A pose on the way to the answer.
+struct Iterate {
+  Eigen::VectorXd positions;
+  // Length of the weighted residual of all goals.
+  double residual = 0;
+};
+
 struct SolverOptions {
   SolverMethod method = SolverMethod::kAuto;
   // Per attempt. When no restart converges the best pose gets one more attempt,
@@ -42,6 +51,9 @@ struct SolverOptions {
   // An interactive guard, honoured where the solver was given a clock. Answers
   // that hit it do not repeat.
   std::optional<absl::Duration> time_limit;
+  // Not owned; receives the poses on the way where the method has few of them:
+  // Newton, pseudo-inverse and minimal change. Null: nobody asks.
+  std::vector<Iterate>* iterates = nullptr;
 };
 
 inline constexpr int kColdRestarts = 40;
