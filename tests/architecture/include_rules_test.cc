@@ -55,7 +55,7 @@ const Includes kNotInCore = {
 
 // The arrows, and no others. The longest fitting prefix decides.
 const std::vector<Room>& House() {
-  static const std::vector<Room> house = {
+  static const std::vector<Room> kHouse = {
     // core: the kinematics library, usable without the service.
     {"core/",           {kStd, "Eigen/", "absl/", kCore},
                         kNotInCore + Includes{kImport}},
@@ -108,7 +108,7 @@ const std::vector<Room>& House() {
     {"client/cli/local_server.cc",
                         {kStd, "absl/", kGrpc, "client/cli/", "server/"}, {}},
   };
-  return house;
+  return kHouse;
 }
 // clang-format on
 

@@ -76,7 +76,7 @@ int Register() {
   return 0;
 }
 
-[[maybe_unused]] const int registered = Register();
+[[maybe_unused]] const int kRegistered = Register();
 
 }  // namespace
 }  // namespace gelenk::benchmarks

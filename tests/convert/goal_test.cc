@@ -15,7 +15,6 @@ namespace {
 
 using ::gelenk::testing::ViolationLines;
 using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 v1::Goal PositionMessage(const std::string& id) {
   v1::Goal proto;

@@ -171,14 +171,14 @@ TEST(UrdfReaderTest, AnAxisThatIsMissingIsX) {
 }
 
 TEST(UrdfReaderTest, AnySkewAxisIsNormalised) {
-  const char kSkew[] = R"(<axis xyz="0.57735 0.57735 -0.57735"/>)";
+  constexpr char kSkew[] = R"(<axis xyz="0.57735 0.57735 -0.57735"/>)";
   EXPECT_LT((ReadOne("continuous", kSkew).axis -
              Eigen::Vector3d(1, 1, -1).normalized())
                 .norm(),
             kRounding);
   EXPECT_THAT(Warnings("continuous", kSkew), IsEmpty());
 
-  const char kLong[] = R"(<axis xyz="0 3 4"/>)";
+  constexpr char kLong[] = R"(<axis xyz="0 3 4"/>)";
   EXPECT_LT(
       (ReadOne("planar", kLong).axis - Eigen::Vector3d(0, 0.6, 0.8)).norm(),
       kRounding);
@@ -188,7 +188,7 @@ TEST(UrdfReaderTest, AnySkewAxisIsNormalised) {
 }
 
 TEST(UrdfReaderTest, AnAxisWithoutDirectionIsRefusedWhereItCounts) {
-  const char kZero[] = R"(<axis xyz="0 0 0"/>)";
+  constexpr char kZero[] = R"(<axis xyz="0 0 0"/>)";
   EXPECT_THAT(Lines("continuous", kZero),
               ElementsAre("line 2: <axis xyz=\"0 0 0\"> of joint \"j\": no "
                           "direction"));
@@ -209,7 +209,7 @@ TEST(UrdfReaderTest, AMissingLimitIsNone) {
   for (const char* type : {"fixed", "continuous", "planar", "floating"}) {
     EXPECT_THAT(Warnings(type, ""), IsEmpty());
   }
-  const char kEffort[] = R"(<limit effort="3" velocity="2"/>)";
+  constexpr char kEffort[] = R"(<limit effort="3" velocity="2"/>)";
   EXPECT_THAT(ReadOne("revolute", kEffort).limits.lower, IsEmpty());
   EXPECT_THAT(ReadOne("revolute", kEffort).limits.max_velocity, ElementsAre(2));
   EXPECT_THAT(Warnings("revolute", kEffort),
@@ -218,7 +218,7 @@ TEST(UrdfReaderTest, AMissingLimitIsNone) {
 }
 
 TEST(UrdfReaderTest, ALimitThatIsHalfMissingIsZero) {
-  const char kUpper[] = R"(<limit upper="1.5"/>)";
+  constexpr char kUpper[] = R"(<limit upper="1.5"/>)";
   EXPECT_THAT(ReadOne("revolute", kUpper).limits.lower, ElementsAre(0));
   EXPECT_THAT(ReadOne("revolute", kUpper).limits.upper, ElementsAre(1.5));
   EXPECT_THAT(Warnings("revolute", kUpper),
@@ -255,7 +255,7 @@ TEST(UrdfReaderTest, ContinuousJointsKeepTheirVelocityOnly) {
 }
 
 TEST(UrdfReaderTest, AVelocityOfZeroIsNoLimit) {
-  const char kZero[] = R"(<limit lower="-1" upper="1" velocity="0"/>)";
+  constexpr char kZero[] = R"(<limit lower="-1" upper="1" velocity="0"/>)";
   EXPECT_THAT(ReadOne("revolute", kZero).limits.max_velocity, IsEmpty());
   EXPECT_THAT(Warnings("revolute", kZero),
               ElementsAre(HasSubstr("velocity of 0 is taken as no limit")));
@@ -265,7 +265,7 @@ TEST(UrdfReaderTest, AVelocityOfZeroIsNoLimit) {
 }
 
 TEST(UrdfReaderTest, OnlyHingesAndSlidersFollow) {
-  const char kMimic[] = R"(<mimic joint="other"/>)";
+  constexpr char kMimic[] = R"(<mimic joint="other"/>)";
   const UrdfJoint joint = ReadOne("continuous", kMimic);
   ASSERT_TRUE(joint.mimic.has_value());
   EXPECT_EQ(joint.mimic->multiplier, 1);
@@ -359,7 +359,7 @@ TEST(UrdfReaderTest, ListsEveryFaultByItsLine) {
 }
 
 TEST(UrdfReaderTest, TheFirstOfSeveralChildrenCounts) {
-  const char kTwo[] =
+  constexpr char kTwo[] =
       "<limit lower=\"-1\" upper=\"1\"/>\n<limit lower=\"-2\" upper=\"2\"/>";
   EXPECT_THAT(ReadOne("revolute", kTwo).limits.lower, ElementsAre(-1));
   EXPECT_THAT(Warnings("revolute", kTwo),

@@ -16,7 +16,6 @@ namespace gelenk {
 namespace {
 
 using ::gelenk::testing::MatrixKinematicsOracle;
-using ::gelenk::testing::MatrixOf;
 using ::gelenk::testing::Random;
 using ::gelenk::testing::RandomPose;
 using ::gelenk::testing::RandomSkeleton;

@@ -21,7 +21,6 @@ using ::gelenk::testing::ViolationLines;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 constexpr InstructionSet kHere = InstructionSet::kBaseline;

@@ -13,7 +13,6 @@
 namespace gelenk::server {
 namespace {
 
-using ::gelenk::testing::ArmGoals;
 using ::gelenk::testing::ArmSession;
 using ::gelenk::testing::ViolationLines;
 using ::testing::ElementsAre;

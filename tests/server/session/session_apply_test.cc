@@ -22,7 +22,6 @@ using ::gelenk::testing::ReachFrame;
 using ::gelenk::testing::StateOf;
 using ::gelenk::testing::ViolationLines;
 using ::testing::ElementsAreArray;
-using ::testing::IsEmpty;
 
 constexpr DriverId kDriver = 7;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

@@ -12,11 +12,8 @@ namespace {
 using ::gelenk::testing::ArmGoals;
 using ::gelenk::testing::ArmSession;
 using ::gelenk::testing::kAim;
-using ::gelenk::testing::kReach;
 using ::gelenk::testing::ReachFrame;
 using ::gelenk::testing::WholeFrame;
-using ::testing::IsEmpty;
-using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr DriverId kDriver = 7;
