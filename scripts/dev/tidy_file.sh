@@ -11,9 +11,10 @@ what_it_reads() {
   own=$(awk -v RS= -v source="/$file\n" 'index($0, source)' "$deps" |
     grep '^    ' | grep -v '^    /usr/' | sed 's/^ *//' | sort -u)
   echo "$PWD/.clang-tidy"
+  echo "$PWD/tests/.clang-tidy"
   echo "$PWD/$file"
   [ -n "$own" ] && echo "$own" && return
-  find "$PWD"/{core,proto,server,client} -name '*.h' -o -name '*.proto'
+  find "$PWD"/{core,proto,server,client,tests} -name '*.h' -o -name '*.proto'
 }
 
 digest=$(what_it_reads | (cd build/release && xargs cat) | sha256sum)
