@@ -171,14 +171,14 @@ TEST(CheckGoalTest, NormalisesAxesAndNormals) {
   aim.axis = {0, 0, -2e-9};
   Goal goal = {"goal", 1, aim};
   EXPECT_TRUE(CheckAndNormalize(goal).ok());
-  EXPECT_TRUE(std::get<AimGoal>(goal.kind)
-                  .axis.isApprox(-Eigen::Vector3d::UnitZ()));
+  EXPECT_TRUE(
+      std::get<AimGoal>(goal.kind).axis.isApprox(-Eigen::Vector3d::UnitZ()));
   HalfSpaceGoal ground;
   ground.world_normal = {0, 1e200, 0};
   goal.kind = ground;
   EXPECT_TRUE(CheckAndNormalize(goal).ok());
-  EXPECT_TRUE(std::get<HalfSpaceGoal>(goal.kind)
-                  .world_normal.isApprox(Eigen::Vector3d::UnitY()));
+  EXPECT_TRUE(std::get<HalfSpaceGoal>(goal.kind).world_normal.isApprox(
+      Eigen::Vector3d::UnitY()));
 }
 
 TEST(CheckGoalTest, EveryKindNamesItsOwnFields) {
