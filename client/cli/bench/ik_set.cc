@@ -73,6 +73,7 @@ std::vector<std::string> CoordinateNames(const Skeleton& skeleton,
     }
   }
   std::vector<std::string> chosen;
+  chosen.reserve(coordinates.size());
   for (int coordinate : coordinates) chosen.push_back(names[coordinate]);
   return chosen;
 }
