@@ -1,13 +1,11 @@
 #include "server/rpc/import_skeleton_call.h"
 
-#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "gelenk/base/violations.h"
-#include "gelenk/formats/bvh_import.h"
-#include "gelenk/formats/bvh_reader.h"
+#include "server/rpc/file_import.h"
 #include "server/rpc/skeleton_message.h"
 #include "server/rpc/status.h"
 
@@ -27,11 +25,7 @@ absl::Status CheckHeader(const v1::ImportHeader& header) {
         "", CheckResourceId("header.skeleton_id", header.skeleton_id()));
   }
   violations.AddStatus("header", CheckRequestId(header.request_id()));
-  if (header.format() != v1::IMPORT_FORMAT_BVH) {
-    violations.Add(
-        "header.format",
-        absl::StrCat("no such format: ", static_cast<int>(header.format())));
-  }
+  violations.AddStatus("", CheckImportFormat(header));
   return violations.ToStatus();
 }
 
@@ -105,23 +99,14 @@ absl::Status ImportSkeletonCall::Take() {
 }
 
 absl::Status ImportSkeletonCall::Import() {
-  BvhBounds bounds;
-  bounds.max_joints = state_->options.limits.max_joints;
-  absl::StatusOr<BvhDocument> document = ReadBvh(data_, bounds);
-  if (!document.ok()) return document.status();
-  std::string().swap(data_);
-  BvhImportOptions options;
-  if (header_.has_unit_m()) options.unit_m = header_.unit_m();
-  absl::StatusOr<BvhImport> import = ImportBvh(*document, options);
+  absl::StatusOr<FileImport> import =
+      ImportFile(header_, std::move(data_), state_->options.limits);
   if (!import.ok()) return import.status();
 
-  StoredSkeleton skeleton;
-  skeleton.warnings = import->warnings;
-  skeleton.create_time = absl::Now();
-  skeleton.skeleton = import->skeleton;
-  absl::StatusOr<StoredSkeleton> stored =
-      state_->skeletons.Create(kDefaultTenant, header_.skeleton_id(),
-                               header_.request_id(), std::move(skeleton));
+  import->skeleton.create_time = absl::Now();
+  absl::StatusOr<StoredSkeleton> stored = state_->skeletons.Create(
+      kDefaultTenant, header_.skeleton_id(), header_.request_id(),
+      std::move(import->skeleton));
   if (!stored.ok()) return stored.status();
   ToProto(*stored, response_.mutable_skeleton());
   response_.set_unit_m(import->unit_m);
