@@ -22,14 +22,19 @@ CLI::Validator Positive() {
 
 void AddSkeletonFileOptions(CLI::App& app, SkeletonFileOptions* options) {
   app.add_option("FILE", options->path,
-                 "A motion capture file (.bvh), or a skeleton (.json)")
+                 "Motion capture (.bvh), a robot (.urdf), a model (.gltf, "
+                 ".glb), or a skeleton (.json)")
       ->required()
       ->option_text("");
   app.add_option("--unit", options->unit_m,
-                 "Metres per unit of a BVH file; default: guessed from the "
-                 "body's height")
+                 "Metres per unit of the file; default: of BVH guessed from "
+                 "the body's height, of glTF 1")
       ->check(Positive())
       ->option_text("M");
+  app.add_option("--skin", options->skin,
+                 "Name or index of a glTF file's skin; default: the one with "
+                 "the most joints")
+      ->option_text("NAME");
 }
 
 }  // namespace gelenk::cli

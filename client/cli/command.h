@@ -38,10 +38,11 @@ Command AddSessionsCommand(CLI::App& app);
 // --format table|json
 void AddFormatOption(CLI::App& app, Format* format);
 
-// FILE, and --unit for BVH.
+// FILE, --unit for BVH and glTF, --skin for glTF.
 struct SkeletonFileOptions {
   std::string path;
   std::optional<double> unit_m;
+  std::optional<std::string> skin;
 };
 void AddSkeletonFileOptions(CLI::App& app, SkeletonFileOptions* options);
 

@@ -69,8 +69,8 @@ absl::StatusOr<v1::Pose> ChosenPose(const FkOptions& options,
 
 absl::Status RunFk(const FkOptions& options, const GlobalOptions& globals,
                    std::string* output) {
-  const absl::StatusOr<SkeletonFile> file =
-      ReadSkeletonFile(options.file.path, options.file.unit_m);
+  const absl::StatusOr<SkeletonFile> file = ReadSkeletonFile(
+      options.file.path, options.file.unit_m, options.file.skin);
   if (!file.ok()) return file.status();
   const absl::StatusOr<v1::Pose> pose = ChosenPose(options, *file);
   if (!pose.ok()) return pose.status();
@@ -118,6 +118,7 @@ Command AddFkCommand(CLI::App& app) {
   fk->footer(
       "Examples:\n"
       "  gelenk fk walk.bvh --frame 100\n"
+      "  gelenk fk robot.urdf\n"
       "  gelenk fk arm.json --pose 0.1,-0.5,1.2 --format json");
   return {fk, [options](const GlobalOptions& globals, std::string* output) {
             return RunFk(*options, globals, output);

@@ -77,8 +77,8 @@ absl::StatusOr<v1::SolveInverseKinematicsRequest> RequestFor(
 
 absl::Status RunIk(const IkOptions& options, const GlobalOptions& globals,
                    std::string* output) {
-  const absl::StatusOr<SkeletonFile> file =
-      ReadSkeletonFile(options.file.path, options.file.unit_m);
+  const absl::StatusOr<SkeletonFile> file = ReadSkeletonFile(
+      options.file.path, options.file.unit_m, options.file.skin);
   if (!file.ok()) return file.status();
   auto request = RequestFor(options);
   if (!request.ok()) return request.status();
@@ -151,6 +151,7 @@ Command AddIkCommand(CLI::App& app) {
       "Examples:\n"
       "  gelenk ik walk.bvh --goal LeftHand=0.4,1.2,0.3 --goal "
       "RightFoot=-0.1,0,0\n"
+      "  gelenk ik robot.urdf --goal gripper=0.4,0.1,0.6\n"
       "  gelenk ik arm.json --pose-goal tool=0.5,0.2,0.1,0,0,0,1 --diagnose");
   return {ik, [options](const GlobalOptions& globals, std::string* output) {
             return RunIk(*options, globals, output);

@@ -17,8 +17,8 @@ struct InfoOptions {
 };
 
 absl::Status RunInfo(const InfoOptions& options, std::string* output) {
-  const absl::StatusOr<SkeletonFile> file =
-      ReadSkeletonFile(options.file.path, options.file.unit_m);
+  const absl::StatusOr<SkeletonFile> file = ReadSkeletonFile(
+      options.file.path, options.file.unit_m, options.file.skin);
   if (!file.ok()) return file.status();
   const Inspection inspection = Inspect(*file);
   *output += options.format == Format::kJson
@@ -33,7 +33,8 @@ absl::Status RunInfo(const InfoOptions& options, std::string* output) {
 Command AddInfoCommand(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* info = app.add_subcommand(
-      "info", "Print what is in a motion capture or skeleton file");
+      "info",
+      "Print what is in a motion capture, robot, model or skeleton file");
   AddSkeletonFileOptions(*info, &options->file);
   AddFormatOption(*info, &options->format);
   info->add_option("--save", options->save_path,
@@ -42,6 +43,7 @@ Command AddInfoCommand(CLI::App& app) {
   info->footer(
       "Examples:\n"
       "  gelenk info walk.bvh\n"
+      "  gelenk info robot.urdf\n"
       "  gelenk info walk.bvh --unit 0.01 --save body.json");
   return {info, [options](const GlobalOptions&, std::string* output) {
             return RunInfo(*options, output);

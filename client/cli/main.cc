@@ -23,6 +23,7 @@ constexpr char kAbout[] =
 constexpr char kExamples[] =
     "Examples:\n"
     "  gelenk info walk.bvh\n"
+    "  gelenk info robot.urdf\n"
     "  gelenk ik walk.bvh --goal LeftHand=0.4,1.2,0.3\n"
     "  gelenk play walk.bvh --out solved.bvh --picture solved.svg\n"
     "  gelenk --server localhost:50051 sessions\n"

@@ -2,29 +2,64 @@
 
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/cli/file_bytes.h"
 #include "convert/skeleton.h"
+#include "gelenk/import/gltf_import.h"
+#include "gelenk/import/gltf_reader.h"
+#include "gelenk/import/urdf_import.h"
+#include "gelenk/import/urdf_reader.h"
 
 namespace gelenk::cli {
 namespace {
+
+// What the importers have in common.
+SkeletonFile Imported(const std::string& path,
+                      std::shared_ptr<const Skeleton> skeleton,
+                      const std::vector<std::string>& warnings) {
+  SkeletonFile file;
+  file.path = path;
+  file.skeleton = std::move(skeleton);
+  convert::ToProto(*file.skeleton, &file.message);
+  file.message.set_display_name(BaseName(path));
+  for (const std::string& warning : warnings) {
+    file.message.add_warnings(warning);
+  }
+  return file;
+}
 
 absl::StatusOr<SkeletonFile> FromBvh(const std::string& path,
                                      std::optional<double> unit_m) {
   absl::StatusOr<BvhClip> clip = ReadBvhClip(path, unit_m);
   if (!clip.ok()) return clip.status();
-  SkeletonFile file;
-  file.path = path;
-  file.skeleton = clip->import.skeleton;
-  convert::ToProto(*file.skeleton, &file.message);
-  file.message.set_display_name(BaseName(path));
-  for (const std::string& warning : clip->import.warnings) {
-    file.message.add_warnings(warning);
-  }
+  SkeletonFile file =
+      Imported(path, clip->import.skeleton, clip->import.warnings);
   file.clip = *std::move(clip);
   return file;
+}
+
+absl::StatusOr<SkeletonFile> FromUrdf(const std::string& path) {
+  const absl::StatusOr<std::string> bytes = ReadFile(path);
+  if (!bytes.ok()) return bytes.status();
+  const absl::StatusOr<UrdfDocument> document = ReadUrdf(*bytes);
+  if (!document.ok()) return InFile(path, document.status());
+  const absl::StatusOr<UrdfImport> import = ImportUrdf(*document);
+  if (!import.ok()) return InFile(path, import.status());
+  return Imported(path, import->skeleton, import->warnings);
+}
+
+absl::StatusOr<SkeletonFile> FromGltf(const std::string& path,
+                                      const GltfImportOptions& options) {
+  const absl::StatusOr<std::string> bytes = ReadFile(path);
+  if (!bytes.ok()) return bytes.status();
+  const absl::StatusOr<GltfDocument> document = ReadGltf(*bytes);
+  if (!document.ok()) return InFile(path, document.status());
+  const absl::StatusOr<GltfImport> import = ImportGltf(*document, options);
+  if (!import.ok()) return InFile(path, import.status());
+  return Imported(path, import->skeleton, import->warnings);
 }
 
 absl::StatusOr<SkeletonFile> FromJson(const std::string& path) {
@@ -52,12 +87,29 @@ std::string BaseName(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-absl::StatusOr<SkeletonFile> ReadSkeletonFile(const std::string& path,
-                                              std::optional<double> unit_m) {
-  if (absl::EndsWithIgnoreCase(path, ".bvh")) return FromBvh(path, unit_m);
-  if (absl::EndsWithIgnoreCase(path, ".json")) return FromJson(path);
-  return absl::InvalidArgumentError(
-      absl::StrCat("\"", path, "\": want a .bvh or .json file"));
+absl::StatusOr<SkeletonFile> ReadSkeletonFile(
+    const std::string& path, std::optional<double> unit_m,
+    const std::optional<std::string>& skin) {
+  const auto ends_with = [&path](absl::string_view end) {
+    return absl::EndsWithIgnoreCase(path, end);
+  };
+  const bool is_gltf = ends_with(".gltf") || ends_with(".glb");
+  if (skin && !is_gltf) {
+    return InFile(
+        path, absl::InvalidArgumentError("--skin: only glTF files have skins"));
+  }
+  if (is_gltf) {
+    return FromGltf(path, {.unit_m = unit_m.value_or(1), .skin = skin});
+  }
+  if (ends_with(".bvh")) return FromBvh(path, unit_m);
+  if (ends_with(".urdf")) {
+    if (!unit_m) return FromUrdf(path);
+    return InFile(path,
+                  absl::InvalidArgumentError("--unit: a URDF is in metres"));
+  }
+  if (ends_with(".json")) return FromJson(path);
+  return absl::InvalidArgumentError(absl::StrCat(
+      "\"", path, "\": want a .bvh, .urdf, .gltf, .glb or .json file"));
 }
 
 }  // namespace gelenk::cli

@@ -22,10 +22,12 @@ struct SkeletonFile {
   std::optional<BvhClip> clip;
 };
 
-// Reads `.bvh`, or `.json`: proto3 JSON of gelenk.v1.Skeleton. `unit_m` is for
-// BVH. Errors name the file and the place in it.
-absl::StatusOr<SkeletonFile> ReadSkeletonFile(const std::string& path,
-                                              std::optional<double> unit_m);
+// Reads what the name's end says: `.bvh`, `.urdf`, `.gltf`, `.glb`, or `.json`:
+// proto3 JSON of gelenk.v1.Skeleton. `unit_m` is for BVH and glTF, `skin` for
+// glTF; elsewhere they are refused. Errors name the file and the place in it.
+absl::StatusOr<SkeletonFile> ReadSkeletonFile(
+    const std::string& path, std::optional<double> unit_m,
+    const std::optional<std::string>& skin = std::nullopt);
 
 // The file's name without folders.
 std::string BaseName(const std::string& path);

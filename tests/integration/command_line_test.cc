@@ -20,6 +20,8 @@
 #include "gelenk/client/connection.h"
 #include "gelenk/formats/bvh_reader.h"
 #include "tests/testing/example_skeletons.h"
+#include "tests/testing/gltf_files.h"
+#include "tests/testing/gripper_arm_urdf.h"
 #include "tests/testing/server_process.h"
 #include "tests/testing/walking_bvh.h"
 
@@ -61,7 +63,7 @@ class CommandLineTest : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   void Write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name) << text;
+    std::ofstream(folder_ / name, std::ios::binary) << text;
   }
 
   // `arguments` hold no quotes. Bounded in time; without a terminal.
@@ -191,6 +193,29 @@ TEST_P(ServedCommandTest, ASavedSkeletonIsAsGoodAsTheClip) {
   const std::vector<std::string> goal = {"--goal", "LeftHand=0.5,1.2,0.3"};
   EXPECT_EQ(RunJson({"ik", "body.json", goal[0], goal[1]})["positions"],
             RunJson({"ik", "walk.bvh", goal[0], goal[1]})["positions"]);
+}
+
+TEST_P(ServedCommandTest, ARobotReachesWithALink) {
+  Write("arm.urdf", gelenk::testing::GripperArmUrdf());
+  const Ending info = Run({"info", "arm.urdf", "--save", "arm.json"});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("0.1 to 2.6 rad, 3 rad/s"));
+  const std::vector<std::string> goal = {"--goal", "palm=0.4,0.3,0.5"};
+  const json solution = RunJson({"ik", "arm.urdf", goal[0], goal[1]});
+  EXPECT_EQ(solution["outcome"], "converged");
+  EXPECT_EQ(RunJson({"ik", "arm.json", goal[0], goal[1]})["positions"],
+            solution["positions"]);
+  EXPECT_THAT(RunJson({"fk", "arm.urdf"})["joints"],
+              SizeIs(gelenk::testing::kGripperArmJointCount));
+}
+
+TEST_P(ServedCommandTest, AModelReachesWithItsHand) {
+  Write("body.glb", gelenk::testing::Glb(gelenk::testing::BodyGltf()));
+  EXPECT_EQ(RunJson({"info", "body.glb", "--skin", "Body"})["joint_count"],
+            gelenk::testing::kBodyGltfJointCount);
+  EXPECT_EQ(
+      RunJson({"ik", "body.glb", "--goal", "LeftHand=0.8,1.2,0.3"})["outcome"],
+      "converged");
 }
 
 TEST_P(ServedCommandTest, UnknownGoalsAreNamed) {

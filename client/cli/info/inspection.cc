@@ -18,7 +18,42 @@ std::vector<std::vector<std::string>> ChannelsOf(const SkeletonFile& file) {
   return channels;
 }
 
+std::vector<std::string> TipsOf(const Skeleton& skeleton) {
+  std::vector<bool> is_tip(skeleton.joint_count(), true);
+  for (int i = 1; i < skeleton.joint_count(); ++i) {
+    is_tip[skeleton.span(i).parent] = false;
+  }
+  std::vector<std::vector<std::string>> effectors(skeleton.joint_count());
+  for (const EndEffector& effector : skeleton.end_effectors()) {
+    effectors[skeleton.FindJoint(effector.joint_id)].push_back(effector.id);
+  }
+  std::vector<std::string> tips;
+  for (int i = 0; i < skeleton.joint_count(); ++i) {
+    if (!is_tip[i]) continue;
+    if (effectors[i].empty()) effectors[i] = {skeleton.joint(i).id};
+    tips.insert(tips.end(), effectors[i].begin(), effectors[i].end());
+  }
+  return tips;
+}
+
 }  // namespace
+
+bool SharesItsJointsFrame(const EndEffector& effector) {
+  const RigidTransform& offset = effector.joint_from_end_effector;
+  return offset.translation.isZero(0) &&
+         offset.rotation.coeffs() == Eigen::Quaterniond::Identity().coeffs();
+}
+
+std::vector<std::string> EffectorsAt(const Skeleton& skeleton, int joint) {
+  std::vector<std::string> ids;
+  for (const EndEffector& effector : skeleton.end_effectors()) {
+    if (effector.joint_id == skeleton.joint(joint).id &&
+        SharesItsJointsFrame(effector)) {
+      ids.push_back(effector.id);
+    }
+  }
+  return ids;
+}
 
 Inspection Inspect(const SkeletonFile& file) {
   Inspection inspection;
@@ -30,6 +65,7 @@ Inspection Inspect(const SkeletonFile& file) {
         FindFirstFrameJump(*file.skeleton, file.clip->poses);
   }
   inspection.channels = ChannelsOf(file);
+  inspection.tips = TipsOf(*file.skeleton);
   return inspection;
 }
 

@@ -21,6 +21,9 @@ struct Inspection {
   std::optional<FirstFrameJump> first_frame_jump;
   // Per joint of the skeleton the channels that the BVH file gives it.
   std::vector<std::vector<std::string>> channels;
+  // Ends of chains: what hangs from joints without children, else these
+  // joints themselves.
+  std::vector<std::string> tips;
 };
 
 Inspection Inspect(const SkeletonFile& file);
@@ -30,6 +33,10 @@ std::string InspectionText(const Inspection& inspection);
 
 // Keys stay; numbers in m, rad, s.
 Json InspectionJson(const Inspection& inspection);
+
+// End effectors that share the frame of `joint`: the links of a robot.
+std::vector<std::string> EffectorsAt(const Skeleton& skeleton, int joint);
+bool SharesItsJointsFrame(const EndEffector& effector);
 
 // A body part's name and its joint, -1 where there is none.
 struct NamedPart {

@@ -39,6 +39,13 @@ Json ClipJson(const Inspection& inspection) {
   return json;
 }
 
+Json MimicJson(const Joint& joint) {
+  if (!joint.mimic) return Json();
+  return {{"joint", joint.mimic->joint_id},
+          {"multiplier", joint.mimic->multiplier},
+          {"offset", joint.mimic->offset}};
+}
+
 Json JointJson(const Inspection& inspection, int index) {
   const Joint& joint = inspection.file->skeleton->joint(index);
   Json json;
@@ -49,6 +56,11 @@ Json JointJson(const Inspection& inspection, int index) {
   json["offset_m"] = Numbers(joint.parent_from_joint.translation);
   json["limited"] =
       !joint.limits.lower.empty() || joint.limits.HasRotationLimits();
+  // Where a side has no limit its number is null.
+  json["lower"] = joint.limits.lower;
+  json["upper"] = joint.limits.upper;
+  json["max_velocity"] = joint.limits.max_velocity;
+  json["mimic"] = MimicJson(joint);
   return json;
 }
 
@@ -77,6 +89,7 @@ Json InspectionJson(const Inspection& inspection) {
          {"joint", effector.joint_id},
          {"offset_m", Numbers(effector.joint_from_end_effector.translation)}});
   }
+  json["tips"] = inspection.tips;
   json["warnings"] = file.message.warnings();
   return json;
 }

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <numbers>
 
 #include "absl/strings/str_cat.h"
@@ -53,6 +54,49 @@ std::string LimitsText(const Skeleton& skeleton) {
                                         skeleton.joint_count());
 }
 
+// Past this a list says less than its length.
+constexpr size_t kMaxListedTips = 12;
+
+std::string TipsText(const std::vector<std::string>& tips) {
+  if (tips.size() <= kMaxListedTips) return absl::StrJoin(tips, ", ");
+  return absl::StrCat(
+      absl::StrJoin(tips.begin(), tips.begin() + kMaxListedTips, ", "),
+      ", and ", tips.size() - kMaxListedTips, " more");
+}
+
+std::string BoundText(double bound) {
+  return std::isfinite(bound) ? Significant(bound, 4) : "any";
+}
+
+// "-1.5 to 1.5 rad, 2 rad/s", or what a mimic follows.
+std::string JointLimitsText(const Joint& joint) {
+  if (joint.mimic) {
+    const Mimic& mimic = *joint.mimic;
+    return absl::StrCat(
+        "= ", Significant(mimic.multiplier, 4), " * ", mimic.joint_id,
+        mimic.offset == 0
+            ? ""
+            : absl::StrCat(mimic.offset < 0 ? " - " : " + ",
+                           Significant(std::abs(mimic.offset), 4)));
+  }
+  const JointLimits& limits = joint.limits;
+  if (joint.type != JointType::kRevolute &&
+      joint.type != JointType::kPrismatic) {
+    return IsLimited(joint) ? "limited" : "";
+  }
+  const absl::string_view unit =
+      joint.type == JointType::kRevolute ? "rad" : "m";
+  std::string text = limits.lower.empty()
+                         ? "any"
+                         : absl::StrCat(BoundText(limits.lower[0]), " to ",
+                                        BoundText(limits.upper[0]), " ", unit);
+  if (!limits.max_velocity.empty()) {
+    absl::StrAppend(&text, ", ", Significant(limits.max_velocity[0], 4), " ",
+                    unit, "/s");
+  }
+  return text;
+}
+
 void AddClip(const Inspection& inspection, Facts& facts) {
   const BvhClip& clip = *inspection.file->clip;
   facts.Add("unit", absl::StrCat(Significant(clip.import.unit_m, 5), " m"));
@@ -79,7 +123,9 @@ std::string FactsText(const Inspection& inspection) {
                             "numbers",
                             skeleton.joint_count(), skeleton.velocity_count(),
                             skeleton.position_count()));
-  facts.Add("end sites", absl::StrCat(skeleton.end_effectors().size()));
+  facts.Add(inspection.file->clip ? "end sites" : "end effectors",
+            absl::StrCat(skeleton.end_effectors().size()));
+  facts.Add("tips", TipsText(inspection.tips));
   facts.Add("limits", LimitsText(skeleton));
   facts.Add("up", UpText(skeleton.up()));
   facts.Add("body", BodyText(skeleton, inspection.body));
@@ -90,18 +136,22 @@ std::string FactsText(const Inspection& inspection) {
   return facts.ToString();
 }
 
-// The nodes of the tree that hang from each joint: joints, then end effectors.
+// The nodes of the tree that hang from each joint: joints, then end effectors
+// with a line of their own.
 struct Children {
   std::vector<int> joints;
   std::vector<const EndEffector*> end_effectors;
 };
 
-std::vector<Children> ChildrenOf(const Skeleton& skeleton) {
+std::vector<Children> ChildrenOf(const SkeletonFile& file) {
+  const Skeleton& skeleton = *file.skeleton;
   std::vector<Children> children(skeleton.joint_count());
   for (int i = 1; i < skeleton.joint_count(); ++i) {
     children[skeleton.span(i).parent].joints.push_back(i);
   }
   for (const EndEffector& effector : skeleton.end_effectors()) {
+    // Links of a robot stand in their joint's line.
+    if (!file.clip && SharesItsJointsFrame(effector)) continue;
     children[skeleton.FindJoint(effector.joint_id)].end_effectors.push_back(
         &effector);
   }
@@ -120,8 +170,13 @@ class TreeTable {
   explicit TreeTable(const Inspection& inspection)
       : inspection_(inspection),
         skeleton_(*inspection.file->skeleton),
-        children_(ChildrenOf(skeleton_)),
-        table_({{"JOINT"}, {"TYPE"}, {"CHANNELS"}, {"OFFSET (m)"}}) {}
+        children_(ChildrenOf(*inspection.file)),
+        has_clip_(inspection.file->clip.has_value()),
+        table_({{"JOINT"},
+                {"TYPE"},
+                {has_clip_ ? "CHANNELS" : "LIMITS"},
+                {"OFFSET (m)"},
+                {has_clip_ ? "" : "END EFFECTOR"}}) {}
 
   std::string ToString() {
     struct Line {
@@ -149,10 +204,12 @@ class TreeTable {
  private:
   void AddJoint(int index, const std::string& branch) {
     const Joint& joint = skeleton_.joint(index);
-    table_.AddRow({absl::StrCat(branch, joint.id),
-                   std::string(JointTypeName(joint.type)),
-                   ShortChannels(inspection_.channels[index]),
-                   Text(joint.parent_from_joint.translation, 4)});
+    table_.AddRow(
+        {absl::StrCat(branch, joint.id), std::string(JointTypeName(joint.type)),
+         has_clip_ ? ShortChannels(inspection_.channels[index])
+                   : JointLimitsText(joint),
+         Text(joint.parent_from_joint.translation, 4),
+         has_clip_ ? "" : absl::StrJoin(EffectorsAt(skeleton_, index), ", ")});
   }
 
   void AddEndEffectors(const Children& children, const std::string& below) {
@@ -161,7 +218,7 @@ class TreeTable {
       const bool last =
           children.joints.empty() && i + 1 == children.end_effectors.size();
       table_.AddRow({absl::StrCat(below, last ? "└ " : "├ ", effector.id),
-                     "end site", "",
+                     has_clip_ ? "end site" : "end effector", "",
                      Text(effector.joint_from_end_effector.translation, 4)});
     }
   }
@@ -169,6 +226,7 @@ class TreeTable {
   const Inspection& inspection_;
   const Skeleton& skeleton_;
   const std::vector<Children> children_;
+  const bool has_clip_;
   Table table_;
 };
 

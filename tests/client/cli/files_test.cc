@@ -8,6 +8,8 @@
 #include "client/cli/info/inspection.h"
 #include "client/cli/skeleton_file.h"
 #include "convert/skeleton.h"
+#include "tests/testing/gltf_files.h"
+#include "tests/testing/gripper_arm_urdf.h"
 #include "tests/testing/walking_bvh.h"
 
 namespace gelenk::cli {
@@ -107,7 +109,95 @@ TEST_F(FilesTest, ABadSkeletonIsToldByItsField) {
 TEST_F(FilesTest, OtherKindsOfFilesAreRefused) {
   const auto file = ReadSkeletonFile("model.fbx", std::nullopt);
   EXPECT_EQ(std::string(file.status().message()),
-            "\"model.fbx\": want a .bvh or .json file");
+            "\"model.fbx\": want a .bvh, .urdf, .gltf, .glb or .json file");
+}
+
+TEST_F(FilesTest, ReadsARobot) {
+  const auto file = ReadSkeletonFile(
+      Write("arm.URDF", ::gelenk::testing::GripperArmUrdf()), std::nullopt);
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->skeleton->joint_count(),
+            ::gelenk::testing::kGripperArmJointCount);
+  EXPECT_EQ(file->message.display_name(), "arm.URDF");
+  EXPECT_EQ(file->message.warnings_size(), 2);
+  EXPECT_FALSE(file->clip.has_value());
+}
+
+TEST_F(FilesTest, ARobotComesRoundThroughJson) {
+  const auto urdf = ReadSkeletonFile(
+      Write("arm.urdf", ::gelenk::testing::GripperArmUrdf()), std::nullopt);
+  ASSERT_TRUE(urdf.ok()) << urdf.status();
+  const auto json = ReadSkeletonFile(
+      Write("arm.json", convert::SkeletonToJson(urdf->message)), std::nullopt);
+  ASSERT_TRUE(json.ok()) << json.status();
+  EXPECT_EQ(json->message.SerializeAsString(),
+            urdf->message.SerializeAsString());
+}
+
+TEST_F(FilesTest, ABrokenRobotIsToldByLine) {
+  std::string text = ::gelenk::testing::GripperArmUrdf();
+  text.replace(text.find("lower=\"0.1\""), 11, "lower=\"abc\"");
+  const auto file = ReadSkeletonFile(Write("broken.urdf", text), std::nullopt);
+  EXPECT_THAT(std::string(file.status().message()),
+              HasSubstr("broken.urdf\": line 37: <limit lower=\"abc\"> of "
+                        "joint \"elbow\": not a number"));
+}
+
+TEST_F(FilesTest, ReadsModelsInBothForms) {
+  const std::string text = ::gelenk::testing::BodyGltf();
+  for (const std::string& path :
+       {Write("body.gltf", text),
+        Write("body.glb", ::gelenk::testing::Glb(text))}) {
+    const auto file = ReadSkeletonFile(path, std::nullopt);
+    ASSERT_TRUE(file.ok()) << file.status();
+    EXPECT_EQ(file->skeleton->joint_count(),
+              ::gelenk::testing::kBodyGltfJointCount);
+    EXPECT_TRUE(ReadSkeletonFile(path, std::nullopt, "Body").ok());
+    EXPECT_THAT(
+        std::string(
+            ReadSkeletonFile(path, std::nullopt, "Tail").status().message()),
+        HasSubstr("there is none called \"Tail\""));
+    const auto half = ReadSkeletonFile(path, 0.5);
+    ASSERT_TRUE(half.ok()) << half.status();
+    EXPECT_NEAR(half->skeleton->rest_positions()[1], 0.475, 1e-12);
+  }
+}
+
+TEST_F(FilesTest, OptionsThatDoNotFitTheFormatAreRefused) {
+  const std::string path =
+      Write("arm.urdf", ::gelenk::testing::GripperArmUrdf());
+  EXPECT_THAT(std::string(ReadSkeletonFile(path, 0.01).status().message()),
+              HasSubstr("--unit: a URDF is in metres"));
+  EXPECT_THAT(
+      std::string(
+          ReadSkeletonFile(path, std::nullopt, "Body").status().message()),
+      HasSubstr("--skin: only glTF files have skins"));
+}
+
+TEST_F(FilesTest, InspectionTellsWhatARobotCanDo) {
+  const auto file = ReadSkeletonFile(
+      Write("arm.urdf", ::gelenk::testing::GripperArmUrdf()), std::nullopt);
+  ASSERT_TRUE(file.ok()) << file.status();
+  const Json json = InspectionJson(Inspect(*file));
+  EXPECT_THAT(json["tips"], ElementsAre("tip_1", "tip_3", "tip_2"));
+  const Json& elbow = json["joints"][4];
+  EXPECT_EQ(elbow["id"], "elbow");
+  EXPECT_THAT(elbow["lower"], ElementsAre(0.1));
+  EXPECT_THAT(elbow["upper"], ElementsAre(2.6));
+  EXPECT_THAT(elbow["max_velocity"], ElementsAre(3));
+  EXPECT_TRUE(elbow["mimic"].is_null());
+  const Json& right = json["joints"][8];
+  EXPECT_EQ(right["mimic"]["joint"], "finger");
+  EXPECT_EQ(right["mimic"]["multiplier"], 0.5);
+
+  const std::string text = InspectionText(Inspect(*file));
+  EXPECT_THAT(text, HasSubstr("tips           tip_1, tip_3, tip_2\n"));
+  EXPECT_THAT(text, HasSubstr("0.1 to 2.6 rad, 3 rad/s"));
+  EXPECT_THAT(text, HasSubstr("any, 2 rad/s"));
+  EXPECT_THAT(text, HasSubstr("0 to 0.04 m, 0.1 m/s"));
+  EXPECT_THAT(text, HasSubstr("= 0.5 * finger + 0.009"));
+  EXPECT_THAT(text, HasSubstr("forearm\n"));
+  EXPECT_THAT(text, HasSubstr("the rest pose has another value"));
 }
 
 TEST_F(FilesTest, InspectionTellsWhatIsInTheFile) {
