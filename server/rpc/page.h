@@ -2,6 +2,9 @@
 #ifndef GELENK_SERVER_RPC_PAGE_H_
 #define GELENK_SERVER_RPC_PAGE_H_
 
+#include <string>
+#include <vector>
+
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "gelenk/base/violations.h"
@@ -22,6 +25,16 @@ inline absl::StatusOr<size_t> PageSize(int requested) {
   }
   if (requested == 0) return kDefaultPageSize;
   return requested < kMaxPageSize ? requested : kMaxPageSize;
+}
+
+// The token of the page after `page`, which was asked for with one item more
+// than its `size`: that one is taken away, and there is another page. Empty on
+// the last page. `name` gives the name of an item.
+template <class Item, class Name>
+std::string TakeNextPageToken(size_t size, std::vector<Item>& page, Name name) {
+  if (page.size() <= size) return "";
+  page.resize(size);
+  return name(page.back());
 }
 
 }  // namespace gelenk::server
