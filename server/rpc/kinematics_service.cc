@@ -78,13 +78,12 @@ absl::Status ListSkeletons(const ServiceState& state,
                            v1::ListSkeletonsResponse* response) {
   absl::StatusOr<size_t> size = PageSize(request.page_size());
   if (!size.ok()) return size.status();
-  const std::vector<StoredSkeleton> page =
-      state.skeletons.List(kDefaultTenant, request.page_token(), *size);
+  std::vector<StoredSkeleton> page =
+      state.skeletons.List(kDefaultTenant, request.page_token(), *size + 1);
+  response->set_next_page_token(TakeNextPageToken(
+      *size, page, [](const StoredSkeleton& stored) { return stored.name; }));
   for (const StoredSkeleton& stored : page) {
     ToListedProto(stored, response->add_skeletons());
-  }
-  if (page.size() == *size) {
-    response->set_next_page_token(page.back().name);
   }
   return absl::OkStatus();
 }
@@ -93,11 +92,9 @@ absl::Status DeleteSkeleton(ServiceState& state,
                             const v1::DeleteSkeletonRequest& request) {
   absl::Status status = CheckResourceName("name", kSkeletons, request.name());
   if (!status.ok()) return status;
-  if (state.sessions.IsSkeletonUsed(kDefaultTenant, request.name())) {
-    return absl::FailedPreconditionError(
-        absl::StrCat("name: a session is on ", request.name()));
-  }
-  status = state.skeletons.Delete(kDefaultTenant, request.name());
+  status = state.sessions.RemoveUnused(
+      kDefaultTenant, request.name(), absl::Now(),
+      [&] { return state.skeletons.Delete(kDefaultTenant, request.name()); });
   if (request.allow_missing() && absl::IsNotFound(status)) {
     return absl::OkStatus();
   }

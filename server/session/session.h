@@ -71,6 +71,7 @@ class Session {
   const std::string& skeleton_name() const { return skeleton_name_; }
   const std::string& affinity_key() const { return affinity_key_; }
   const Skeleton& skeleton() const { return *trees_->skeleton(); }
+  SharedTrees& trees() const { return *trees_; }
   absl::Time create_time() const { return create_time_; }
 
   // Makes `driver` the one who may solve. FAILED_PRECONDITION when there is

@@ -100,15 +100,18 @@ int SessionRegistry::Sweep(absl::Time now) {
   return count;
 }
 
-bool SessionRegistry::IsSkeletonUsed(absl::string_view tenant,
-                                     absl::string_view skeleton_name) const {
-  absl::ReaderMutexLock lock(&mutex_);
+absl::Status SessionRegistry::RemoveUnused(
+    absl::string_view tenant, absl::string_view skeleton_name, absl::Time now,
+    const std::function<absl::Status()>& remove) const {
+  absl::MutexLock lock(&mutex_);
   for (const auto& [key, session] : sessions_) {
-    if (key.first == tenant && session->skeleton_name() == skeleton_name) {
-      return true;
+    if (key.first == tenant && session->skeleton_name() == skeleton_name &&
+        !session->IsExpired(now)) {
+      return absl::FailedPreconditionError(
+          absl::StrCat("name: ", session->name(), " is on ", skeleton_name));
     }
   }
-  return false;
+  return remove();
 }
 
 int SessionRegistry::size() const {

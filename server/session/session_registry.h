@@ -53,9 +53,11 @@ class SessionRegistry {
   // Ends what has expired; returns how many.
   int Sweep(absl::Time now);
 
-  // True when a living session is on that skeleton.
-  bool IsSkeletonUsed(absl::string_view tenant,
-                      absl::string_view skeleton_name) const;
+  // Runs `remove` while no living session is on that skeleton and none can be
+  // made; FAILED_PRECONDITION when there is one.
+  absl::Status RemoveUnused(absl::string_view tenant,
+                            absl::string_view skeleton_name, absl::Time now,
+                            const std::function<absl::Status()>& remove) const;
 
   int size() const;
 

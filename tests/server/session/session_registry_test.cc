@@ -5,6 +5,7 @@
 
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -209,12 +210,30 @@ TEST_F(SessionRegistryTest, AnotherTenantsNameIsToldFromNoneByNothing) {
                 .status());
 }
 
-TEST_F(SessionRegistryTest, KnowsWhichSkeletonsAreUsed) {
-  EXPECT_FALSE(registry_.IsSkeletonUsed(kDefaultTenant, "skeletons/arm"));
+TEST_F(SessionRegistryTest, RemovesOnlySkeletonsThatNoSessionIsOn) {
+  int removed = 0;
+  const auto remove = [&](absl::string_view tenant, absl::string_view skeleton,
+                          absl::Time now) {
+    return registry_.RemoveUnused(tenant, skeleton, now, [&removed] {
+      ++removed;
+      return absl::NotFoundError("said by what removes");
+    });
+  };
+  const auto expect_removed = [&](const absl::Status& status) {
+    EXPECT_TRUE(absl::IsNotFound(status)) << status;
+    EXPECT_EQ(std::exchange(removed, 0), 1);
+  };
+  expect_removed(remove(kDefaultTenant, "skeletons/arm", kNow));
   ASSERT_TRUE(Create("hand").ok());
-  EXPECT_TRUE(registry_.IsSkeletonUsed(kDefaultTenant, "skeletons/arm"));
-  EXPECT_FALSE(registry_.IsSkeletonUsed(kDefaultTenant, "skeletons/leg"));
-  EXPECT_FALSE(registry_.IsSkeletonUsed(kTheirs, "skeletons/arm"));
+  const absl::Status used = remove(kDefaultTenant, "skeletons/arm", kNow);
+  EXPECT_TRUE(absl::IsFailedPrecondition(used));
+  EXPECT_EQ(used.message(), "name: sessions/hand is on skeletons/arm");
+  EXPECT_EQ(removed, 0);
+  expect_removed(remove(kDefaultTenant, "skeletons/leg", kNow));
+  expect_removed(remove(kTheirs, "skeletons/arm", kNow));
+  // Expired, though not swept yet.
+  expect_removed(
+      remove(kDefaultTenant, "skeletons/arm", kNow + absl::Minutes(10)));
 }
 
 // --- Many at once ---
