@@ -117,18 +117,15 @@ void ToProto(const Session& session, bool draining, v1::Session* proto) {
   proto->set_etag(absl::StrCat(kEtagPrefix, snapshot.revision));
 }
 
-absl::StatusOr<SessionState> StateFromProto(const v1::Session& proto,
-                                            const Skeleton& skeleton,
-                                            const Limits& limits) {
-  SessionState state;
+absl::Status StateFromProto(const v1::Session& proto, const Skeleton& skeleton,
+                            const Limits& limits, SessionState& state) {
   Violations violations;
   violations.AddStatus("", SetGoals(proto, state));
   violations.AddStatus("", SetOptions(proto, state));
   violations.AddStatus("", SetPose(proto, skeleton, state));
   violations.AddStatus("", SetPlace(proto, state));
   violations.AddStatus("", SetIdleTtl(proto, limits, state));
-  if (!violations.empty()) return violations.ToStatus();
-  return state;
+  return violations.ToStatus();
 }
 
 absl::Status UpdateState(const v1::UpdateSessionRequest& request,
@@ -157,13 +154,11 @@ absl::Status UpdateState(const v1::UpdateSessionRequest& request,
   const auto note = [&violations](const absl::Status& status) {
     violations.AddStatus("session", status);
   };
-  SessionState changed = state;
-  if (paths.contains("goals")) note(SetGoals(proto, changed));
-  if (paths.contains("solver_options")) note(SetOptions(proto, changed));
-  if (paths.contains("pose")) note(SetPose(proto, skeleton, changed));
-  if (paths.contains("world_from_skeleton")) note(SetPlace(proto, changed));
-  if (paths.contains("idle_ttl")) note(SetIdleTtl(proto, limits, changed));
-  if (violations.empty()) state = std::move(changed);
+  if (paths.contains("goals")) note(SetGoals(proto, state));
+  if (paths.contains("solver_options")) note(SetOptions(proto, state));
+  if (paths.contains("pose")) note(SetPose(proto, skeleton, state));
+  if (paths.contains("world_from_skeleton")) note(SetPlace(proto, state));
+  if (paths.contains("idle_ttl")) note(SetIdleTtl(proto, limits, state));
   return violations.ToStatus();
 }
 

@@ -44,28 +44,28 @@ absl::StatusOr<std::shared_ptr<Session>> FindSession(const ServiceState& state,
   return state.sessions.Find(kDefaultTenant, name, absl::Now());
 }
 
-absl::StatusOr<std::shared_ptr<Session>> MakeSession(const ServiceState& state,
-                                                     const v1::Session& proto,
-                                                     std::string name,
-                                                     absl::Time now) {
-  absl::StatusOr<StoredSkeleton> stored =
-      state.skeletons.Find(kDefaultTenant, proto.skeleton());
-  if (!stored.ok()) return stored.status();
-  Violations violations;
-  absl::StatusOr<SessionState> parts =
-      StateFromProto(proto, *stored->skeleton, state.options.limits);
-  violations.AddStatus("session", parts.status());
-  if (!violations.empty()) return violations.ToStatus();
-  absl::StatusOr<IkProblem> problem =
-      stored->trees->CreateProblem(parts->goals, parts->options);
+// Makes the problem that a session of `parts`, read with `status`, would solve;
+// adds every violation. Whether the method fits is asked once all else is
+// right.
+absl::StatusOr<IkProblem> MakeProblem(const absl::Status& status,
+                                      const SessionState& parts,
+                                      SharedTrees& trees,
+                                      Violations& violations) {
+  absl::StatusOr<IkProblem> problem = trees.CreateProblem(
+      parts.goals, status.ok() ? parts.options : SolverOptions());
   violations.AddStatus("session", problem.status());
-  if (!violations.empty()) return violations.ToStatus();
-  const std::string affinity_key = proto.affinity_key().empty()
-                                       ? name.substr(kSessions.size() + 1)
-                                       : proto.affinity_key();
-  return std::make_shared<Session>(std::move(name), proto.skeleton(),
-                                   affinity_key, stored->trees,
-                                   *std::move(problem), *std::move(parts), now);
+  return problem;
+}
+
+// Reads what the session of `proto` shall be; otherwise as above.
+absl::StatusOr<IkProblem> ReadParts(const v1::Session& proto,
+                                    const StoredSkeleton& skeleton,
+                                    const Limits& limits, SessionState& parts,
+                                    Violations& violations) {
+  const absl::Status status =
+      StateFromProto(proto, *skeleton.skeleton, limits, parts);
+  violations.AddStatus("session", status);
+  return MakeProblem(status, parts, *skeleton.trees, violations);
 }
 
 absl::Status CreateSession(ServiceState& state,
@@ -74,22 +74,40 @@ absl::Status CreateSession(ServiceState& state,
   if (state.draining) {
     return absl::UnavailableError("the server is going away");
   }
+  const v1::Session& proto = request.session();
   Violations violations;
   if (!request.session_id().empty()) {
     violations.AddStatus("",
                          CheckResourceId("session_id", request.session_id()));
   }
   violations.AddStatus("", CheckRequestId(request.request_id()));
-  violations.AddStatus("", CheckResourceName("session.skeleton", kSkeletons,
-                                             request.session().skeleton()));
-  violations.AddStatus("", CheckAffinityKey(request.session().affinity_key()));
+  violations.AddStatus(
+      "", CheckResourceName("session.skeleton", kSkeletons, proto.skeleton()));
+  violations.AddStatus("", CheckAffinityKey(proto.affinity_key()));
+  const absl::StatusOr<StoredSkeleton> skeleton =
+      state.skeletons.Find(kDefaultTenant, proto.skeleton());
+  SessionState parts;
+  absl::StatusOr<IkProblem> problem =
+      skeleton.ok()
+          ? ReadParts(proto, *skeleton, state.options.limits, parts, violations)
+          : skeleton.status();
   if (!violations.empty()) return violations.ToStatus();
+  if (!problem.ok()) return problem.status();
 
   const absl::Time now = absl::Now();
   absl::StatusOr<std::shared_ptr<Session>> session = state.sessions.Create(
       kDefaultTenant, request.session_id(), request.request_id(), now,
-      [&](std::string name) {
-        return MakeSession(state, request.session(), std::move(name), now);
+      [&](std::string name) -> absl::StatusOr<std::shared_ptr<Session>> {
+        // It may have been deleted meanwhile.
+        const absl::Status found =
+            state.skeletons.Find(kDefaultTenant, proto.skeleton()).status();
+        if (!found.ok()) return found;
+        const std::string affinity_key = proto.affinity_key().empty()
+                                             ? name.substr(kSessions.size() + 1)
+                                             : proto.affinity_key();
+        return std::make_shared<Session>(
+            std::move(name), proto.skeleton(), affinity_key, skeleton->trees,
+            *std::move(problem), std::move(parts), now);
       });
   if (!session.ok()) return session.status();
   ToProto(**session, state.draining, response);
@@ -111,13 +129,12 @@ absl::Status ListSessions(const ServiceState& state,
                           v1::ListSessionsResponse* response) {
   absl::StatusOr<size_t> size = PageSize(request.page_size());
   if (!size.ok()) return size.status();
-  const std::vector<std::shared_ptr<Session>> page = state.sessions.List(
-      kDefaultTenant, request.page_token(), *size, absl::Now());
+  std::vector<std::shared_ptr<Session>> page = state.sessions.List(
+      kDefaultTenant, request.page_token(), *size + 1, absl::Now());
+  response->set_next_page_token(TakeNextPageToken(
+      *size, page, [](const auto& session) { return session->name(); }));
   for (const std::shared_ptr<Session>& session : page) {
     ToProto(*session, state.draining, response->add_sessions());
-  }
-  if (page.size() == *size) {
-    response->set_next_page_token(page.back()->name());
   }
   return absl::OkStatus();
 }
@@ -133,8 +150,13 @@ absl::Status UpdateSession(const ServiceState& state,
   if (!revision.ok()) return revision.status();
   absl::Status status = (*session)->Update(
       [&](SessionState& parts) {
-        return UpdateState(request, (*session)->skeleton(),
-                           state.options.limits, parts);
+        Violations violations;
+        const absl::Status read = UpdateState(request, (*session)->skeleton(),
+                                              state.options.limits, parts);
+        violations.AddStatus("", read);
+        // Made once more by Update; only here it is known what it is part of.
+        MakeProblem(read, parts, (*session)->trees(), violations).IgnoreError();
+        return violations.ToStatus();
       },
       *revision, absl::Now());
   if (!status.ok()) return status;

@@ -21,13 +21,13 @@ absl::Status CheckAttach(const v1::AttachSession& request) {
   Violations violations;
   violations.AddStatus(
       "", CheckResourceName("attach.session", kSessions, request.session()));
-  if (request.slot() < 0) {
-    violations.Add("attach.slot",
-                   absl::StrCat("want 0 or more, got ", request.slot()));
-  }
-  if (request.report_interval() < 0 || request.continuation_interval() < 0) {
-    violations.Add("attach", "intervals are 0 or more");
-  }
+  const auto check = [&violations](absl::string_view field, int value) {
+    if (value >= 0) return;
+    violations.Add(field, absl::StrCat("want 0 or more, got ", value));
+  };
+  check("attach.slot", request.slot());
+  check("attach.report_interval", request.report_interval());
+  check("attach.continuation_interval", request.continuation_interval());
   return violations.ToStatus();
 }
 
