@@ -11,6 +11,7 @@
 #include "server/ops/health_check.h"
 #include "server/ops/logging.h"
 #include "server/ops/stop_signal.h"
+#include "server/rpc/message_log.h"
 #include "server/server.h"
 #include "server/version.h"
 
@@ -67,6 +68,7 @@ int main(int argc, char** argv) {
     return *exit_code;
   }
   gelenk::server::StartLogging(command_line.log_level);
+  gelenk::server::DropMessageLog();
   return command_line.health_check
              ? gelenk::server::RunHealthCheck(command_line)
              : gelenk::server::Run(command_line);
