@@ -66,7 +66,9 @@ absl::Status CheckOptions(const ServerOptions& options) {
   CheckPositive("write_stall", limits.write_stall, violations);
   CheckPositive("max_idle_ttl", limits.max_idle_ttl, violations);
   CheckPositive("default_idle_ttl", limits.default_idle_ttl, violations);
+  CheckPositive("import_stall", limits.import_stall, violations);
   CheckPositive("heartbeat", options.heartbeat, violations);
+  CheckPositive("keepalive", options.keepalive, violations);
   return violations.ToStatus();
 }
 

@@ -25,8 +25,10 @@ struct Limits {
   int max_message_bytes = 4 << 20;
   // One imported file; an hour of motion capture is about 200 MB.
   int64_t max_import_bytes = int64_t{256} << 20;
-  // Imports held in memory at a time.
+  // Imports held in memory at a time, and how long one may wait for its next
+  // piece before it loses its place.
   int max_imports = 4;
+  absl::Duration import_stall = absl::Seconds(30);
   // Streams (driving and watching) at a time, and sessions on one stream.
   int max_streams = 10000;
   int max_slots = 1024;
@@ -60,6 +62,9 @@ struct ServerOptions {
   bool reflection = false;
   // Silence after which a stream is told that the server lives.
   absl::Duration heartbeat = absl::Seconds(5);
+  // Silence after which a client is asked whether it lives; it has as long to
+  // answer, and as long for its first words.
+  absl::Duration keepalive = absl::Seconds(30);
   Limits limits;
 };
 

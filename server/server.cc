@@ -5,6 +5,7 @@
 #include <grpcpp/server_builder.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <thread>
 #include <utility>
@@ -29,12 +30,39 @@ constexpr absl::Duration kSweepInterval = absl::Seconds(1);
 // After the drain time: for streams to read why they end.
 constexpr absl::Duration kClosingGrace = absl::Seconds(2);
 
+// What a client may send ahead on a stream that is not read: about 5 MB/s from
+// another continent. gRPC would otherwise measure the line and let one stream
+// fill up tens of MB.
+constexpr int kStreamWindowBytes = 256 << 10;
+// What clients may ping at most.
+constexpr absl::Duration kLeastPingInterval = absl::Seconds(5);
+
 ServerOptions WithDefaults(ServerOptions options) {
   const int cores =
       std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (options.io_threads == 0) options.io_threads = std::max(1, cores / 2);
   if (options.worker_threads == 0) options.worker_threads = cores;
   return options;
+}
+
+// Finds out clients that are gone without a word, and those that never had one.
+void SetKeepalive(absl::Duration keepalive, grpc::ServerBuilder& builder) {
+  const auto set = [&builder](const char* argument, absl::Duration value) {
+    constexpr int64_t kMost = std::numeric_limits<int>::max();
+    builder.AddChannelArgument(
+        argument, static_cast<int>(std::clamp<int64_t>(
+                      absl::ToInt64Milliseconds(value), 1, kMost)));
+  };
+  set(GRPC_ARG_KEEPALIVE_TIME_MS, keepalive);
+  set(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, keepalive);
+  set(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, keepalive);
+  // Also without a call: idle connections are memory, too.
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+  // Games ping every ten seconds or so; gRPC hangs up on those who ping more
+  // often than this, three times.
+  set(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
+      kLeastPingInterval);
 }
 
 // Ids need to be unguessable by accident only.
@@ -65,6 +93,10 @@ class GrpcServer final : public Server {
     // Else a second server on the port would start in silence, and the kernel
     // would split the sessions between the two.
     builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+    SetKeepalive(options.keepalive, builder);
+    builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+    builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES,
+                               kStreamWindowBytes);
     builder.SetMaxReceiveMessageSize(options.limits.max_message_bytes);
     builder.RegisterService(&kinematics_);
     builder.RegisterService(&sessions_);

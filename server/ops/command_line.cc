@@ -44,6 +44,8 @@ void AddLimits(CLI::App& app, Limits& limits) {
   AddNumber(app, "--max-import-bytes", limits.max_import_bytes,
             "One imported file, bytes");
   AddNumber(app, "--max-imports", limits.max_imports, "Imports at a time");
+  AddDuration(app, "--import-stall", limits.import_stall,
+              "How long an import may wait for its next piece");
   AddNumber(app, "--max-streams", limits.max_streams, "Streams at a time");
   AddNumber(app, "--max-slots", limits.max_slots, "Sessions on one stream");
   AddNumber(app, "--max-unsent-answers", limits.max_unsent_answers,
@@ -104,6 +106,8 @@ std::optional<int> ParseCommandLine(int argc, char** argv,
                "Serve reflection, for buf curl and grpcurl");
   AddDuration(app, "--heartbeat", server.heartbeat,
               "Silence after which a stream hears that the server lives");
+  AddDuration(app, "--keepalive", server.keepalive,
+              "Silence after which a client is asked whether it lives");
   AddDuration(app, "--drain", command_line.drain,
               "How long streams have to leave after SIGTERM");
   app.add_option("--log-level", command_line.log_level,

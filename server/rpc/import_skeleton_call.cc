@@ -1,5 +1,6 @@
 #include "server/rpc/import_skeleton_call.h"
 
+#include <chrono>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -16,6 +17,10 @@ absl::Status Malformed(absl::string_view field, absl::string_view description) {
   Violations violations;
   violations.Add(field, description);
   return violations.ToStatus();
+}
+
+absl::Status ClientIsGone() {
+  return absl::CancelledError("the client is gone");
 }
 
 absl::Status CheckHeader(const v1::ImportHeader& header) {
@@ -41,11 +46,16 @@ ImportSkeletonCall::ImportSkeletonCall(
     IoThread* thread)
     : service_(service), state_(state), thread_(thread), count_(*thread) {
   grpc::ServerCompletionQueue* queue = thread_->queue();
+  context_.AsyncNotifyWhenDone(&done_);
   service_->RequestImportSkeleton(&context_, &reader_, queue, queue, &started_);
 }
 
+ImportSkeletonCall::~ImportSkeletonCall() {
+  if (ticking_) thread_->RemoveTicking(this);
+}
+
 void ImportSkeletonCall::OnStarted(bool ok) {
-  if (!ok) {  // the server is shutting down
+  if (!ok) {  // the server is shutting down; `done_` never comes
     delete this;
     return;
   }
@@ -56,20 +66,51 @@ void ImportSkeletonCall::OnStarted(bool ok) {
     Finish(absl::ResourceExhaustedError("too many imports are under way"));
     return;
   }
+  thread_->AddTicking(this);
+  ticking_ = true;
+  Read();
+}
+
+void ImportSkeletonCall::Read() {
+  last_read_ = absl::Now();
+  reading_ = true;
   reader_.Read(&request_, &read_);
 }
 
+void ImportSkeletonCall::Tick(absl::Time now) {
+  const absl::Duration stall = state_->options.limits.import_stall;
+  // While a worker is at the call, nothing is read.
+  if (!reading_ || finishing_ || now - last_read_ < stall) return;
+  Finish(absl::DeadlineExceededError(
+      absl::StrCat("data: no piece came for ", absl::FormatDuration(stall))));
+}
+
 void ImportSkeletonCall::OnRead(bool ok) {
+  reading_ = false;
+  if (finishing_) {
+    DeleteIfDone();
+    return;
+  }
   if (ok) {
     if (absl::Status status = Take(); !status.ok()) {
       Finish(status);
       return;
     }
-    reader_.Read(&request_, &read_);
+    Read();
     return;
   }
   if (!has_header_) {
     Finish(Malformed("header", "the first message must hold it"));
+    return;
+  }
+  // The reads of a cancelled call end as if it was half-closed; OnDone, which
+  // tells the difference, is right behind.
+  alarm_.Set(thread_->queue(), std::chrono::system_clock::now(), &settled_);
+}
+
+void ImportSkeletonCall::OnSettled(bool) {
+  if (cancelled_) {
+    Finish(ClientIsGone());
     return;
   }
   const bool taken =
@@ -103,6 +144,7 @@ absl::Status ImportSkeletonCall::Import() {
       ImportFile(header_, std::move(data_), state_->options.limits);
   if (!import.ok()) return import.status();
 
+  if (cancelled_) return ClientIsGone();
   import->skeleton.create_time = absl::Now();
   absl::StatusOr<StoredSkeleton> stored = state_->skeletons.Create(
       kDefaultTenant, header_.skeleton_id(), header_.request_id(),
@@ -114,6 +156,7 @@ absl::Status ImportSkeletonCall::Import() {
 }
 
 void ImportSkeletonCall::Finish(const absl::Status& status) {
+  finishing_ = true;
   if (status.ok()) {
     reader_.Finish(response_, grpc::Status::OK, &finished_);
   } else {
@@ -121,6 +164,19 @@ void ImportSkeletonCall::Finish(const absl::Status& status) {
   }
 }
 
-void ImportSkeletonCall::OnFinished(bool) { delete this; }
+void ImportSkeletonCall::OnDone(bool) {
+  is_done_ = true;
+  cancelled_ = context_.IsCancelled();
+  DeleteIfDone();
+}
+
+void ImportSkeletonCall::OnFinished(bool) {
+  finished_call_ = true;
+  DeleteIfDone();
+}
+
+void ImportSkeletonCall::DeleteIfDone() {
+  if (finished_call_ && is_done_ && !reading_) delete this;
+}
 
 }  // namespace gelenk::server

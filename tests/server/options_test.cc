@@ -137,6 +137,11 @@ INSTANTIATE_TEST_SUITE_P(
                 o.heartbeat = absl::Nanoseconds(v);
               },
               1},
+        Bound{"keepalive",
+              [](ServerOptions& o, int64_t v) {
+                o.keepalive = absl::Nanoseconds(v);
+              },
+              1},
         OfLimit("max_sessions", &Limits::max_sessions),
         OfLimit("max_skeletons", &Limits::max_skeletons),
         OfLimit("max_joints", &Limits::max_joints),
@@ -146,6 +151,7 @@ INSTANTIATE_TEST_SUITE_P(
         OfLimit("max_streams", &Limits::max_streams),
         OfLimit("max_slots", &Limits::max_slots),
         OfLimit("max_unsent_answers", &Limits::max_unsent_answers),
+        OfDuration("import_stall", &Limits::import_stall),
         OfDuration("write_stall", &Limits::write_stall),
         OfDuration("max_idle_ttl", &Limits::max_idle_ttl),
         OfDuration("default_idle_ttl", &Limits::default_idle_ttl)),

@@ -14,12 +14,13 @@ namespace gelenk::testing {
 inline constexpr int kReachGoal = 0;
 inline constexpr int kAimGoal = 1;
 
-// skeletons/planar-arm: three links of 0.5 m, revolute joints "j0" .. "j2" about +Z
-// without limits, the end is "tip".
+// skeletons/planar-arm: three links of 0.5 m, revolute joints "j0" .. "j2"
+// about +Z without limits, the end is "tip".
 v1::CreateSkeletonRequest ArmSkeletonRequest();
 
-// A session on skeletons/planar-arm, warm, with the goals "reach" (a point, by the
-// tip) and "aim" (an orientation of j1, of little weight). `id` may be empty.
+// A session on skeletons/planar-arm, warm, with the goals "reach" (a point, by
+// the tip) and "aim" (an orientation of j1, of little weight). `id` may be
+// empty.
 v1::CreateSessionRequest ArmSessionRequest(const std::string& id = "");
 
 // Slot 0, EVERY_FRAME.

@@ -87,6 +87,9 @@ std::vector<Flag> Flags() {
   const auto heartbeat = [](const CommandLine& l) {
     return absl::FormatDuration(l.server.heartbeat);
   };
+  const auto keepalive = [](const CommandLine& l) {
+    return absl::FormatDuration(l.server.keepalive);
+  };
   const auto isa = [](const CommandLine& l) {
     return std::string(InstructionSetName(l.server.instruction_set));
   };
@@ -102,6 +105,7 @@ std::vector<Flag> Flags() {
       {"log-level", "warn", log_level, "loud"},
       {"drain", "500ms", drain, "soon"},
       {"heartbeat", "200ms", heartbeat, "5"},
+      {"keepalive", "45s", keepalive, "5"},
       {"isa", "baseline", isa, "mmx"},
       {"io-threads", "3", io_threads, "three"},
       {"worker-threads", "4", worker_threads, "4.5"},
@@ -115,6 +119,7 @@ std::vector<Flag> Flags() {
       Of("max-streams", &Limits::max_streams),
       Of("max-slots", &Limits::max_slots),
       Of("max-unsent-answers", &Limits::max_unsent_answers),
+      Of("import-stall", &Limits::import_stall),
       Of("write-stall", &Limits::write_stall),
       Of("max-idle-ttl", &Limits::max_idle_ttl),
       Of("default-idle-ttl", &Limits::default_idle_ttl),
