@@ -92,6 +92,14 @@ absl::Status ServerProcess::Start() {
   return absl::DeadlineExceededError(absl::StrCat(program_, " does not start"));
 }
 
+int64_t ServerProcess::resident_bytes() const {
+  std::ifstream file(absl::StrCat("/proc/", pid_, "/statm"));
+  int64_t total_pages = 0;
+  int64_t resident_pages = 0;
+  file >> total_pages >> resident_pages;
+  return resident_pages * sysconf(_SC_PAGESIZE);
+}
+
 void ServerProcess::Kill() {
   if (!is_running()) return;
   kill(pid_, SIGKILL);

@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ class ServerProcess {
   std::string target() const;
   int port() const { return port_; }
   bool is_running() const { return pid_ > 0; }
+  // Memory that the process holds, as the kernel counts it; 0 when it does not
+  // run.
+  int64_t resident_bytes() const;
 
   // SIGKILL, and waits for the end.
   void Kill();
