@@ -178,6 +178,16 @@ void IkProblem::RefreshWeights(int goal_index) {
   }
 }
 
+const SerialArm* IkProblem::arm() const {
+  const SerialArm* arm = tree_->arm();
+  if (arm == nullptr || targets_.size() != 1) return nullptr;
+  const kernel::TaskTarget& target = targets_[0];
+  const double* scale = target.row_scale;
+  const bool is_known = target.active && IsSolved(goals_[0]) &&
+                        scale[3] == scale[4] && scale[3] == scale[5];
+  return is_known ? arm : nullptr;
+}
+
 size_t IkProblem::ByteSize() const {
   size_t bytes = sizeof(*this) +
                  targets_.capacity() * sizeof(kernel::TaskTarget) +

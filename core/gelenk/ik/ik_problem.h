@@ -66,6 +66,9 @@ class IkProblem {
   // For solvers.
   const SparseTree& tree() const { return *tree_; }
   absl::Span<const kernel::TaskTarget> targets() const { return targets_; }
+  // Not null when the problem is one goal, of a kind and weight that the
+  // kernels of arms know, on the tip of an arm.
+  const SerialArm* arm() const;
 
   // Without skeleton and tree.
   size_t ByteSize() const;

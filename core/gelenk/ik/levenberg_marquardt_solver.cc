@@ -6,6 +6,8 @@
 #include <memory>
 
 #include "gelenk/ik/kernel/rotation_bounds.h"
+#include "gelenk/ik/serial_arm.h"
+#include "gelenk/ik/solve_arm.h"
 #include "gelenk/ik/solve_diagnosis.h"
 #include "gelenk/ik/start_sampler.h"
 #include "gelenk/math/rotation.h"
@@ -60,13 +62,13 @@ kernel::Settings SettingsFor(const IkProblem& problem,
   return settings;
 }
 
-SolveOutcome OutcomeOf(const kernel::Attempt& attempt) {
-  switch (attempt.end) {
+SolveOutcome OutcomeOf(kernel::AttemptEnd end, bool pushed_at_limit) {
+  switch (end) {
     case kernel::AttemptEnd::kConverged:
       return SolveOutcome::kConverged;
     case kernel::AttemptEnd::kStationary:
-      return attempt.pushed_at_limit ? SolveOutcome::kStalledAtLimits
-                                     : SolveOutcome::kUnreachable;
+      return pushed_at_limit ? SolveOutcome::kStalledAtLimits
+                             : SolveOutcome::kUnreachable;
     case kernel::AttemptEnd::kStopped:
       return SolveOutcome::kTimeLimit;
     default:
@@ -154,6 +156,7 @@ ConstVectorMap View(const std::vector<double>& numbers) {
 LevenbergMarquardtSolver::LevenbergMarquardtSolver(InstructionSet level)
     : level_(level),
       attempt_(AttemptFor(level)),
+      arm_kernel_(ArmKernelFor(level)),
       run_chain_(ChainFunctionFor(level)) {}
 
 void LevenbergMarquardtSolver::Reserve(const IkProblem& problem,
@@ -189,7 +192,6 @@ void LevenbergMarquardtSolver::Reserve(const IkProblem& problem,
     workspace_.rotation_errors2[0] = 0;
   }
   start_.resize(problem.skeleton().position_count());
-  change_.resize(problem.skeleton().velocity_count());
 }
 
 kernel::Attempt LevenbergMarquardtSolver::Run(const IkProblem& problem,
@@ -209,6 +211,11 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
                                      SolveStart start, VectorView positions,
                                      SolveReport& report,
                                      const StopCondition& stop) {
+  const SerialArm* arm = problem.arm();
+  if (arm != nullptr &&
+      SolveAsArm(problem, *arm, options, start, positions, report, stop)) {
+    return;
+  }
   const kernel::TreeLayout tree = problem.tree().Layout();
   const Skeleton& skeleton = problem.skeleton();
   Reserve(problem, tree);
@@ -227,7 +234,47 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
                       positions, report);
   }
   AlignHemispheres(skeleton, View(start_), positions);
-  Report(problem, options, tree, attempt, positions, report);
+  report.outcome = OutcomeOf(attempt.end, attempt.pushed_at_limit);
+  report.position_errors_m.resize(tree.task_count);
+  report.rotation_errors_rad.resize(tree.task_count);
+  for (int t = 0; t < tree.task_count; ++t) {
+    ReportErrors(t, workspace_.position_errors2[t],
+                 workspace_.rotation_errors2[t], report);
+  }
+  ReportDetails(problem, options, tree, positions, report);
+}
+
+bool LevenbergMarquardtSolver::SolveAsArm(
+    const IkProblem& problem, const SerialArm& arm,
+    const SolverOptions& options, SolveStart start, VectorView positions,
+    SolveReport& report, const StopCondition& stop) {
+  const kernel::TreeLayout tree = problem.tree().Layout();
+  start_.assign(positions.begin(), positions.end());
+  ClampToLimits(problem.skeleton(), positions);
+  kernel::ArmRow q;
+  arm.Gather(positions, q);
+  if (!arm.Takes(q)) {
+    positions = View(start_);
+    return false;
+  }
+  kernel::ArmSettings settings;
+  kernel::ArmTarget target;
+  arm.Prepare(SettingsFor(problem, tree, options, stop), problem.targets()[0],
+              settings);
+  arm.Prepare(problem.targets()[0], target);
+  const ArmRequest request = {arm, settings, start,
+                              ArmRestartBudget(options, start),
+                              options.restart_seed};
+  const kernel::ArmAttempt attempt = SolveArm(arm_kernel_, request, target, q);
+  arm.Scatter(q, positions);
+  report.outcome = OutcomeOf(attempt.end, attempt.pushed_at_limit);
+  report.iteration_count = attempt.iterations;
+  report.restart_count = attempt.drawn;
+  report.position_errors_m.resize(1);
+  report.rotation_errors_rad.resize(1);
+  ReportErrors(0, attempt.errors.position2, attempt.errors.rotation2, report);
+  ReportDetails(problem, options, tree, positions, report);
+  return true;
 }
 
 void LevenbergMarquardtSolver::FindMovingJoints(
@@ -291,20 +338,22 @@ kernel::Attempt LevenbergMarquardtSolver::Restart(const IkProblem& problem,
   return attempt;
 }
 
-void LevenbergMarquardtSolver::Report(const IkProblem& problem,
-                                      const SolverOptions& options,
-                                      const kernel::TreeLayout& tree,
-                                      const kernel::Attempt& attempt,
-                                      const ConstVectorView& positions,
-                                      SolveReport& report) {
-  report.outcome = OutcomeOf(attempt);
-  report.position_errors_m.resize(tree.task_count);
-  report.rotation_errors_rad.resize(tree.task_count);
-  for (int t = 0; t < tree.task_count; ++t) {
-    report.position_errors_m[t] = std::sqrt(workspace_.position_errors2[t]);
-    const double half_chord = 0.5 * std::sqrt(workspace_.rotation_errors2[t]);
-    report.rotation_errors_rad[t] = 2 * std::asin(std::min(half_chord, 1.0));
-  }
+void LevenbergMarquardtSolver::ReportErrors(int t, double position2,
+                                            double rotation2,
+                                            SolveReport& report) {
+  report.position_errors_m[t] = std::sqrt(position2);
+  const double half_chord = 0.5 * std::sqrt(rotation2);
+  // To the last digit, without the library's call.
+  report.rotation_errors_rad[t] =
+      half_chord < 1e-4 ? 2 * half_chord * (1 + half_chord * half_chord / 6)
+                        : 2 * std::asin(std::min(half_chord, 1.0));
+}
+
+void LevenbergMarquardtSolver::ReportDetails(const IkProblem& problem,
+                                             const SolverOptions& options,
+                                             const kernel::TreeLayout& tree,
+                                             const ConstVectorView& positions,
+                                             SolveReport& report) {
   report.limited_joints.clear();
   report.limited_joints.reserve(tree.node_count);
   report.change = 0;
@@ -322,6 +371,7 @@ void LevenbergMarquardtSolver::Report(const IkProblem& problem,
       report.limited_joints.push_back(joint);
     }
   }
+  change_.resize(skeleton.velocity_count());
   report.change = WeightedChange(
       problem, View(start_), positions,
       Eigen::Map<Eigen::VectorXd>(change_.data(), change_.size()));

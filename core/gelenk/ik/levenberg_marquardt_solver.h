@@ -22,6 +22,7 @@
 
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/instruction_set.h"
+#include "gelenk/ik/kernel/arm_layout.h"
 #include "gelenk/ik/kernel/chain_layout.h"
 #include "gelenk/ik/kernel/tree_layout.h"
 #include "gelenk/ik/solve_report.h"
@@ -49,6 +50,12 @@ class LevenbergMarquardtSolver {
   InstructionSet instruction_set() const { return level_; }
 
  private:
+  // By the kernels of arms; false, and nothing done, where they do not take the
+  // start.
+  bool SolveAsArm(const IkProblem& problem, const SerialArm& arm,
+                  const SolverOptions& options, SolveStart start,
+                  VectorView positions, SolveReport& report,
+                  const StopCondition& stop);
   void Reserve(const IkProblem& problem, const kernel::TreeLayout& tree);
   // One attempt, by the kernel that fits the problem.
   kernel::Attempt Run(const IkProblem& problem, const kernel::TreeLayout& tree,
@@ -59,12 +66,17 @@ class LevenbergMarquardtSolver {
   kernel::Attempt Restart(const IkProblem& problem, kernel::Settings settings,
                           int budget, int64_t seed, kernel::Attempt attempt,
                           VectorView positions, SolveReport& report);
-  void Report(const IkProblem& problem, const SolverOptions& options,
-              const kernel::TreeLayout& tree, const kernel::Attempt& attempt,
-              const ConstVectorView& positions, SolveReport& report);
+  // Of goal t.
+  static void ReportErrors(int t, double position2, double rotation2,
+                           SolveReport& report);
+  // What options.detail adds.
+  void ReportDetails(const IkProblem& problem, const SolverOptions& options,
+                     const kernel::TreeLayout& tree,
+                     const ConstVectorView& positions, SolveReport& report);
 
   InstructionSet level_;
   kernel::AttemptFunction attempt_;
+  kernel::ArmKernel arm_kernel_;
   kernel::ChainFunction run_chain_;
   // Grow to the largest problem seen and stay.
   std::vector<double> memory_;

@@ -40,7 +40,8 @@ struct SolverOptions {
   // with four times as many.
   int max_iterations = 50;
   // Attempts from other starts when one does not converge; unset means
-  // kColdRestarts from a cold start and none from a warm one.
+  // kColdRestarts (of an arm kArmColdRestarts) from a cold start and none from
+  // a warm one.
   std::optional<int> max_restarts;
   // Seed of those starts.
   int64_t restart_seed = 0;

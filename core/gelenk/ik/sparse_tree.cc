@@ -346,6 +346,7 @@ SparseTree::SparseTree(const Skeleton& skeleton,
                        absl::Span<const EffectorTask> tasks) {
   SparseTreeBuilder(skeleton, tasks, *this).Build();
   chain_ = SerialChain::Of(Layout());
+  arm_ = SerialArm::Create(Layout());
 }
 
 kernel::TreeLayout SparseTree::Layout() const {
@@ -372,7 +373,7 @@ size_t SparseTree::ByteSize() const {
          bytes(columns_) + bytes(lower_) + bytes(upper_) +
          bytes(path_columns_) + bytes(followers_) + bytes(tasks_) +
          bytes(joints_of_nodes_) + bytes(joints_of_columns_) +
-         (chain_ ? chain_->ByteSize() : 0);
+         (chain_ ? chain_->ByteSize() : 0) + (arm_ ? sizeof(*arm_) : 0);
 }
 
 }  // namespace gelenk

@@ -7,11 +7,13 @@
 #ifndef GELENK_IK_SPARSE_TREE_H_
 #define GELENK_IK_SPARSE_TREE_H_
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "absl/types/span.h"
 #include "gelenk/ik/kernel/tree_layout.h"
+#include "gelenk/ik/serial_arm.h"
 #include "gelenk/ik/serial_chain.h"
 #include "gelenk/skeleton/skeleton.h"
 
@@ -39,6 +41,8 @@ class SparseTree {
 
   // For the solver of chains; null when these tasks make none.
   const SerialChain* chain() const { return chain_ ? &*chain_ : nullptr; }
+  // Null when these tasks are not that of one arm.
+  const SerialArm* arm() const { return arm_.get(); }
 
   size_t ByteSize() const;
 
@@ -56,6 +60,7 @@ class SparseTree {
   std::vector<int> joints_of_nodes_;
   std::vector<int> joints_of_columns_;
   std::optional<SerialChain> chain_;
+  std::unique_ptr<const SerialArm> arm_;
   int axis_count_ = 0;
   int h_size_ = 0;
   int j_size_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "gelenk/ik/kernel/split_mix.h"
 #include "gelenk/math/rotation.h"
 
 namespace gelenk {
@@ -15,18 +16,21 @@ constexpr double kTranslationReach_m = 0.3;
 
 }  // namespace
 
+StartRange RangeOfStarts(bool is_angle, double start, double lower,
+                         double upper) {
+  const double reach = is_angle ? std::numbers::pi : kTranslationReach_m;
+  const double center = is_angle ? 0 : start;
+  // A bound on one side only may lie beyond the default of the other.
+  if (!std::isfinite(lower)) lower = std::min(center - reach, upper);
+  if (!std::isfinite(upper)) upper = std::max(center + reach, lower);
+  return {lower, upper};
+}
+
 StartSampler::StartSampler(int64_t seed)
     : state_(static_cast<uint64_t>(seed)) {}
 
 double StartSampler::Uniform(double lower, double upper) {
-  // SplitMix64 (Steele, Lea, Flood 2014).
-  state_ += 0x9E3779B97F4A7C15u;
-  uint64_t z = state_;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-  z ^= z >> 31;
-  const double unit = static_cast<double>(z >> 11) * 0x1p-53;
-  return lower + (upper - lower) * unit;
+  return kernel::NextUniform(state_, lower, upper);
 }
 
 void StartSampler::Sample(const Skeleton& skeleton,
@@ -47,14 +51,9 @@ void StartSampler::SampleJoint(const Skeleton& skeleton, int index,
   for (int k = 0; k < scalars; ++k) {
     const bool angle = joint.type == JointType::kRevolute ||
                        (joint.type == JointType::kPlanar && k == 2);
-    const double reach = angle ? std::numbers::pi : kTranslationReach_m;
-    const double center = angle ? 0 : start[q + k];
-    double lower = bounds.lower[q + k];
-    double upper = bounds.upper[q + k];
-    // A bound on one side only may lie beyond the default of the other.
-    if (!std::isfinite(lower)) lower = std::min(center - reach, upper);
-    if (!std::isfinite(upper)) upper = std::max(center + reach, lower);
-    positions[q + k] = Uniform(lower, upper);
+    const StartRange range = RangeOfStarts(
+        angle, start[q + k], bounds.lower[q + k], bounds.upper[q + k]);
+    positions[q + k] = Uniform(range.lower, range.upper);
   }
   if (!has_quaternion) return;
   const int at = q + scalars;

@@ -9,6 +9,17 @@
 
 namespace gelenk {
 
+// Where random numbers for one coordinate come from.
+struct StartRange {
+  double lower;
+  double upper;
+};
+
+// The bounds where there are any; else half a turn either way of zero for an
+// angle, and near `start` for a translation.
+StartRange RangeOfStarts(bool is_angle, double start, double lower,
+                         double upper);
+
 // Deterministic: the same seed gives the same starts on every machine.
 class StartSampler {
  public:

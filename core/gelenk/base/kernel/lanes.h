@@ -18,6 +18,10 @@ namespace {
 template <int kCount>
 struct PackOf;
 template <>
+struct PackOf<1> {
+  typedef double Pack;
+};
+template <>
 struct PackOf<2> {
   typedef double Pack __attribute__((vector_size(16), may_alias));
   typedef int64_t Mask __attribute__((vector_size(16), may_alias));
@@ -77,13 +81,54 @@ struct Lanes : PackOf<kCount> {
     *reinterpret_cast<Pack*>(to) = pack;
   }
   static GELENK_INLINE Pack All(double value) { return value - Pack{}; }
+  // Where the processor cannot compare whole 64-bit numbers, the language's own
+  // choice between packs becomes branches.
+  static GELENK_INLINE Pack Select(const Mask& mask, const Pack& a,
+                                   const Pack& b) {
+#if defined(__SSE4_1__)
+    return mask ? a : b;
+#else
+    return (Pack)((mask & (Mask)a) | (~mask & (Mask)b));
+#endif
+  }
   static GELENK_INLINE Pack Min(const Pack& a, const Pack& b) {
     return a < b ? a : b;
   }
   static GELENK_INLINE Pack Max(const Pack& a, const Pack& b) {
     return a > b ? a : b;
   }
+  static GELENK_INLINE Pack SquareRoot(const Pack& a) {
+    Pack root;
+    for (int i = 0; i < kCount; ++i) root[i] = __builtin_sqrt(a[i]);
+    return root;
+  }
   static GELENK_INLINE Pack Abs(const Pack& a) { return Max(a, -a); }
+  // One bit a lane, set where the lane's sign is.
+  static GELENK_INLINE unsigned Bits(const Mask& mask) {
+#if defined(__AVX512DQ__)
+    if constexpr (kCount == 8) {
+      typedef long long Signs __attribute__((vector_size(64)));
+      return static_cast<unsigned char>(
+          __builtin_ia32_cvtq2mask512((Signs)mask));
+    }
+#endif
+#if defined(__AVX__)
+    if constexpr (kCount == 4) {
+      typedef double Signs __attribute__((vector_size(32)));
+      return __builtin_ia32_movmskpd256((Signs)mask);
+    }
+#endif
+#if defined(__SSE2__)
+    if constexpr (kCount == 2) {
+      typedef double Signs __attribute__((vector_size(16)));
+      return __builtin_ia32_movmskpd((Signs)mask);
+    }
+#endif
+    unsigned bits = 0;
+    for (int i = 0; i < kCount; ++i) bits |= (mask[i] < 0 ? 1u : 0u) << i;
+    return bits;
+  }
+
   // Sine and cosine of |x| <= kLargestAngle, within 1 ulp: minimax polynomials
   // of the Cephes library's kind on [-pi/4, pi/4], a three-part reduction.
   static GELENK_INLINE void SineCosine(const Pack& x, Pack* sine,
@@ -116,8 +161,8 @@ struct Lanes : PackOf<kCount> {
                                  z * -1.13596475577881948265e-11)))));
     const Mask quadrant = (Mask)rounded;
     const Mask odd = -(quadrant & 1);
-    const Pack a = odd ? c : s;
-    const Pack b = odd ? s : c;
+    const Pack a = Select(odd, c, s);
+    const Pack b = Select(odd, s, c);
     // Bit 1 of the quadrant, and of the next one, moved to the sign.
     const Mask sine_sign = (quadrant & 2) << 62;
     const Mask cosine_sign = ((quadrant + 1) & 2) << 62;

@@ -1,0 +1,203 @@
+#include "gelenk/ik/solve_arm.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gelenk/ik/start_sampler.h"
+
+namespace gelenk {
+namespace {
+
+using kernel::ArmAttempt;
+using kernel::ArmRow;
+using kernel::AttemptEnd;
+
+// Around a warm start: this far from it, rad or m, in so many poses. Two rounds
+// of the widest vectors; of 300,000 targets that were near their starts all
+// that a descent had missed were met so.
+constexpr double kNearby = 0.15;
+constexpr int kNearbyStarts = 16;
+
+// Longest steps of Newton's method, rad or m: where it looks for the closest
+// pose, and where it is to stay in the valley of the start.
+constexpr double kLongStep = 0.5;
+constexpr double kShortStep = 0.1;
+
+// Iterations of the last attempt against those of the others.
+constexpr int kPolishFactor = 4;
+
+// Energies that differ by less, relatively, are as good.
+constexpr double kSameEnergy = 1e-6;
+
+bool Converged(const ArmAttempt& attempt) {
+  return attempt.end == AttemptEnd::kConverged;
+}
+
+class ArmSolve {
+ public:
+  ArmSolve(const kernel::ArmKernel& kernel, const ArmRequest& request,
+           const kernel::ArmTarget& target, const ArmRow& start)
+      : kernel_(kernel),
+        request_(request),
+        layout_(request.arm.layout()),
+        settings_(request.settings),
+        target_(target),
+        start_(start),
+        q_(start) {}
+
+  // All but a descent that converged nearby; it is `first`, to q_.
+  ArmAttempt GoOn(const ArmAttempt& first, ArmRow& q) {
+    best_ = first;
+    q_ = q;
+    const bool warm = request_.start == SolveStart::kWarm;
+    if (best_.end == AttemptEnd::kImpatient && warm) LookAround();
+    if (!Converged(best_) && best_.end != AttemptEnd::kStopped &&
+        request_.restart_budget > 0) {
+      Search();
+    }
+    // Else the iterations were used up.
+    if (best_.end == AttemptEnd::kImpatient) FindClosest();
+    const bool settled =
+        Converged(best_) || best_.end == AttemptEnd::kStationary;
+    if (warm && settled && LargestMove(request_.arm, start_, q_) > kArmJump) {
+      StayNear();
+    }
+    q = q_;
+    return best_;
+  }
+
+ private:
+  void LookAround() {
+    if (request_.arm.IsOutOfReach(settings_, target_)) return;
+    kernel::ArmStarts starts = {};
+    for (int i = 0; i < layout_.joint_count; ++i) {
+      starts.lower[i] = std::max(settings_.lower[i], start_[i] - kNearby);
+      starts.upper[i] = std::min(settings_.upper[i], start_[i] + kNearby);
+    }
+    starts.state = static_cast<uint64_t>(request_.restart_seed);
+    starts.budget = kNearbyStarts;
+    ArmRow q = start_;
+    ArmAttempt attempt = kernel_.search(layout_, settings_, starts, target_, q);
+    // They are no restarts: none leaves the neighbourhood.
+    attempt.drawn = 0;
+    Count(attempt);
+    // Of poses that do not reach it that of the descent is the one that moves
+    // on smoothly from frame to frame.
+    if (Converged(attempt)) Replace(attempt, q);
+    if (attempt.end == AttemptEnd::kStopped) best_.end = attempt.end;
+  }
+
+  void Search() {
+    ArmRow q = start_;
+    const ArmAttempt attempt = kernel_.search(
+        layout_, settings_, RandomStarts(request_, start_), target_, q);
+    Count(attempt);
+    if (Converged(attempt) || attempt.errors.energy < best_.errors.energy) {
+      Replace(attempt, q);
+    }
+    best_.end = attempt.end;
+  }
+
+  void FindClosest() {
+    kernel::ArmSettings settings = settings_;
+    if (request_.restart_budget > 0) settings.max_iterations *= kPolishFactor;
+    ArmRow q = q_;
+    const ArmAttempt attempt =
+        kernel_.settle(layout_, settings, kLongStep, target_, q);
+    Count(attempt);
+    Replace(attempt, q);
+  }
+
+  void StayNear() {
+    ArmRow q = start_;
+    const ArmAttempt attempt =
+        kernel_.settle(layout_, settings_, kShortStep, target_, q);
+    Count(attempt);
+    if (Converged(attempt) != Converged(best_)) {
+      if (Converged(attempt)) Replace(attempt, q);
+      return;
+    }
+    const bool as_close =
+        Converged(attempt) ||
+        attempt.errors.energy <= (1 + kSameEnergy) * best_.errors.energy;
+    if (as_close && LargestMove(request_.arm, start_, q) <
+                        LargestMove(request_.arm, start_, q_)) {
+      Replace(attempt, q);
+    }
+  }
+
+  void Count(const ArmAttempt& attempt) {
+    best_.iterations += attempt.iterations;
+    best_.drawn += attempt.drawn;
+  }
+
+  void Replace(const ArmAttempt& attempt, const ArmRow& q) {
+    best_.end = attempt.end;
+    best_.errors = attempt.errors;
+    best_.pushed_at_limit = attempt.pushed_at_limit;
+    q_ = q;
+  }
+
+  const kernel::ArmKernel& kernel_;
+  const ArmRequest& request_;
+  const kernel::ArmLayout& layout_;
+  const kernel::ArmSettings& settings_;
+  const kernel::ArmTarget& target_;
+  const ArmRow start_;
+  ArmRow q_;
+  ArmAttempt best_ = {};
+};
+
+}  // namespace
+
+kernel::ArmKernel ArmKernelFor(InstructionSet level) {
+#ifdef GELENK_X86_LEVELS
+  if (level == InstructionSet::kAvx2) {
+    return {kernel::avx2::DescendArm, kernel::avx2::SettleArm,
+            kernel::avx2::SearchArm, kernel::avx2::DescendArms};
+  }
+  if (level == InstructionSet::kAvx512) {
+    return {kernel::avx512::DescendArm, kernel::avx512::SettleArm,
+            kernel::avx512::SearchArm, kernel::avx512::DescendArms};
+  }
+#endif
+  return {kernel::baseline::DescendArm, kernel::baseline::SettleArm,
+          kernel::baseline::SearchArm, kernel::baseline::DescendArms};
+}
+
+kernel::ArmStarts RandomStarts(const ArmRequest& request, const ArmRow& q) {
+  kernel::ArmStarts starts = {};
+  for (int i = 0; i < request.arm.joint_count(); ++i) {
+    const StartRange range =
+        RangeOfStarts(request.arm.turns(i), q[i], request.settings.lower[i],
+                      request.settings.upper[i]);
+    starts.lower[i] = range.lower;
+    starts.upper[i] = range.upper;
+  }
+  starts.state = static_cast<uint64_t>(request.restart_seed);
+  starts.budget = request.restart_budget;
+  return starts;
+}
+
+double LargestMove(const SerialArm& arm, const ArmRow& from, const ArmRow& to) {
+  double largest = 0;
+  for (int i = 0; i < arm.joint_count(); ++i) {
+    largest = std::max(largest, std::abs(to[i] - from[i]));
+  }
+  return largest;
+}
+
+kernel::ArmAttempt SolveArm(const kernel::ArmKernel& kernel,
+                            const ArmRequest& request,
+                            const kernel::ArmTarget& target, ArmRow& q) {
+  const ArmRow start = q;
+  const ArmAttempt attempt =
+      kernel.descend(request.arm.layout(), request.settings, target, q);
+  const bool done =
+      Converged(attempt) && (request.start == SolveStart::kCold ||
+                             LargestMove(request.arm, start, q) <= kArmJump);
+  if (done) return attempt;
+  return ArmSolve(kernel, request, target, start).GoOn(attempt, q);
+}
+
+}  // namespace gelenk
