@@ -76,4 +76,29 @@ std::shared_ptr<const Skeleton> PandaArm() {
   return builder.Build().value();
 }
 
+std::shared_ptr<const Skeleton> Ur5Arm() {
+  // Universal Robots, "DH parameters": standard rows, along and about Z, then
+  // along and about X; so what follows a joint is the offset of the next.
+  struct StandardRow {
+    double a_m, d_m;
+    int alpha_quarters;
+  };
+  const std::vector<StandardRow> rows = {{0, 0.089159, 1}, {-0.425, 0, 0},
+                                         {-0.39225, 0, 0}, {0, 0.10915, 1},
+                                         {0, 0.09465, -1}, {0, 0.0823, 0}};
+  SkeletonBuilder builder;
+  RigidTransform offset;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    Joint joint = RevoluteAboutZ(static_cast<int>(i), offset);
+    joint.limits.lower = {-2 * M_PI};
+    joint.limits.upper = {2 * M_PI};
+    builder.AddJoint(joint);
+    const double half = rows[i].alpha_quarters * M_PI / 4;
+    offset.rotation = QuaternionXyzw(std::sin(half), 0, 0, std::cos(half));
+    offset.translation = {rows[i].a_m, 0, rows[i].d_m};
+  }
+  builder.AddEndEffector({"tip", "j5", offset});
+  return builder.Build().value();
+}
+
 }  // namespace gelenk::testing

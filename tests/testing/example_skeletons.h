@@ -19,6 +19,10 @@ std::shared_ptr<const Skeleton> PlanarChain(
 // limits, the flange is "tip".
 std::shared_ptr<const Skeleton> PandaArm();
 
+// Universal Robots' UR5: six revolute joints "j0" .. "j5" of two turns either
+// way, singular wherever elbow or wrist are straight; the flange is "tip".
+std::shared_ptr<const Skeleton> Ur5Arm();
+
 }  // namespace gelenk::testing
 
 #endif  // GELENK_TESTS_TESTING_EXAMPLE_SKELETONS_H_

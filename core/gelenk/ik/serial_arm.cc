@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 #include <vector>
 
 #include "gelenk/math/rigid_transform.h"
@@ -138,7 +139,10 @@ std::unique_ptr<const SerialArm> SerialArm::Create(
       length += std::max(std::abs(tree.lower[i]), std::abs(tree.upper[i]));
     }
   }
-  RowMajor3(layout.last_from_tip_rotation) = frame(n - 1).transpose() * tip;
+  const Matrix3d last_from_tip = frame(n - 1).transpose() * tip;
+  RowMajor3(layout.last_from_tip_rotation) = last_from_tip;
+  arm->tip_from_last_ =
+      Eigen::Quaterniond(last_from_tip).normalized().conjugate();
   arm->length_ = length;
   arm->has_translation_ = task.row_begin == 0;
   arm->has_rotation_ = task.row_end == 6;
@@ -205,6 +209,39 @@ void SerialArm::Prepare(const kernel::TaskTarget& target,
   for (int k = 0; k < 3; ++k) {
     out.world_translation[k] = target.world_translation[k];
   }
+}
+
+void SerialArm::Prepare(const GoalTarget& target,
+                        kernel::ArmTarget& out) const {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Vector3d translation = Vector3d::Zero();
+  if (const auto* pose = std::get_if<RigidTransform>(&target)) {
+    rotation = pose->rotation;
+    translation = pose->translation;
+  } else if (const auto* point = std::get_if<Vector3d>(&target)) {
+    translation = *point;
+  } else if (const auto* turn = std::get_if<Eigen::Quaterniond>(&target)) {
+    rotation = *turn;
+  }
+  RowMajor3(out.world_rotation) =
+      (rotation * tip_from_last_).toRotationMatrix();
+  Eigen::Map<Vector3d>(out.world_translation) = translation;
+}
+
+void SerialArm::Clamp(const kernel::ArmSettings& settings,
+                      kernel::ArmRow& q) const {
+  for (int i = 0; i < joint_count(); ++i) {
+    q[i] = std::clamp(q[i], settings.lower[i], settings.upper[i]);
+  }
+}
+
+bool SerialArm::HasFreeSlide(const kernel::ArmSettings& settings) const {
+  for (int i = 0; i < joint_count(); ++i) {
+    const bool bounded =
+        std::isfinite(settings.lower[i]) && std::isfinite(settings.upper[i]);
+    if (!turns(i) && !bounded) return true;
+  }
+  return false;
 }
 
 bool SerialArm::IsOutOfReach(const kernel::ArmSettings& settings,

@@ -7,9 +7,11 @@
 #ifndef GELENK_IK_SERIAL_ARM_H_
 #define GELENK_IK_SERIAL_ARM_H_
 
+#include <Eigen/Geometry>
 #include <array>
 #include <memory>
 
+#include "gelenk/ik/goal.h"
 #include "gelenk/ik/kernel/arm_layout.h"
 #include "gelenk/ik/kernel/tree_layout.h"
 #include "gelenk/skeleton/pose.h"
@@ -40,6 +42,15 @@ class SerialArm {
                kernel::ArmSettings& arm_settings) const;
   void Prepare(const kernel::TaskTarget& target,
                kernel::ArmTarget& arm_target) const;
+  // The same from the target of the goal itself: a point, an orientation or a
+  // pose.
+  void Prepare(const GoalTarget& target, kernel::ArmTarget& arm_target) const;
+
+  // Moves `q` inside the bounds.
+  void Clamp(const kernel::ArmSettings& settings, kernel::ArmRow& q) const;
+
+  // True where a joint that slides has no bound on some side.
+  bool HasFreeSlide(const kernel::ArmSettings& settings) const;
 
   // True where the tip surely cannot get to the target, however the joints are.
   bool IsOutOfReach(const kernel::ArmSettings& settings,
@@ -50,6 +61,7 @@ class SerialArm {
 
   kernel::ArmLayout layout_ = {};
   std::array<int, kernel::kMaxArmJoints> positions_ = {};  // in q, per joint
+  Eigen::Quaterniond tip_from_last_ = Eigen::Quaterniond::Identity();
   // From the first joint's origin to the tip with all links in a row, m.
   double length_ = 0;
   // Which rows the task has.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "gelenk/ik/batch_solver.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/kinematics/jacobian.h"
 #include "gelenk/kinematics/kinematic_tree.h"
@@ -183,6 +184,27 @@ TEST(SolverAllocationTest, WarmFramesOfManySkeletonsInTurn) {
   }
   streams.push_back(MakeStream(random, PandaArm()));
   EXPECT_EQ(AllocationsOfWarmFrames(streams, {}), 0);
+}
+
+TEST(SolverAllocationTest, ABatchOfArmsTheSecondTime) {
+  Random random(7);
+  const auto panda = PandaArm();
+  const Eigen::VectorXd start = RandomPoseWithinLimits(random, *panda);
+  IkProblem problem =
+      IkProblem::Create(panda, PoseGoalsAt(*panda, start)).value();
+  std::vector<GoalTarget> targets;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::VectorXd pose = RandomPose(random, *panda);
+    targets.push_back(TargetOf(PoseGoalsAt(*panda, pose)[0].kind));
+  }
+  BatchSolver solver;
+  BatchReport report;
+  Eigen::MatrixXd positions = start.replicate(1, 200);
+  solver.Solve(problem, targets, {}, SolveStart::kCold, positions, report);
+  positions.colwise() = start;
+  const int before = allocation_count;
+  solver.Solve(problem, targets, {}, SolveStart::kCold, positions, report);
+  EXPECT_EQ(allocation_count - before, 0);
 }
 
 // A chain with one position goal has a kernel of its own.
