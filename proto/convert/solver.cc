@@ -1,10 +1,10 @@
 #include "convert/solver.h"
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "convert/duration.h"
 #include "gelenk/base/violations.h"
 
 namespace gelenk::convert {
@@ -77,13 +77,6 @@ void CopyErrors(const std::vector<double>& errors,
   }
 }
 
-void SetDuration(absl::Duration duration, google::protobuf::Duration* proto) {
-  const int64_t seconds =
-      absl::IDivDuration(duration, absl::Seconds(1), &duration);
-  proto->set_seconds(seconds);
-  proto->set_nanos(static_cast<int>(absl::ToInt64Nanoseconds(duration)));
-}
-
 }  // namespace
 
 absl::StatusOr<SolverOptions> FromProto(const v1::SolverOptions& proto) {
@@ -99,9 +92,10 @@ absl::StatusOr<SolverOptions> FromProto(const v1::SolverOptions& proto) {
   if (proto.has_rotation_tolerance_rad()) {
     options.rotation_tolerance_rad = proto.rotation_tolerance_rad();
   }
+  if (proto.has_max_step()) options.max_step = proto.max_step();
+  options.limit_speed = proto.limit_speed();
   if (proto.has_time_limit()) {
-    options.time_limit = absl::Seconds(proto.time_limit().seconds()) +
-                         absl::Nanoseconds(proto.time_limit().nanos());
+    options.time_limit = FromProto(proto.time_limit());
   }
   if (proto.diagnose()) options.detail = ReportDetail::kDiagnosis;
 
@@ -124,8 +118,10 @@ void ToProto(const SolverOptions& options, v1::SolverOptions* proto) {
   proto->set_restart_seed(options.restart_seed);
   proto->set_position_tolerance_m(options.position_tolerance_m);
   proto->set_rotation_tolerance_rad(options.rotation_tolerance_rad);
+  if (options.max_step) proto->set_max_step(*options.max_step);
+  proto->set_limit_speed(options.limit_speed);
   if (options.time_limit) {
-    SetDuration(*options.time_limit, proto->mutable_time_limit());
+    ToProto(*options.time_limit, proto->mutable_time_limit());
   }
   proto->set_diagnose(options.detail == ReportDetail::kDiagnosis);
 }
@@ -138,7 +134,7 @@ void ToProto(const SolveReport& report, ReportDetail detail,
   proto->set_restart_count(report.restart_count);
   CopyErrors(report.position_errors_m, proto->mutable_position_errors_m());
   CopyErrors(report.rotation_errors_rad, proto->mutable_rotation_errors_rad());
-  SetDuration(solve_duration, proto->mutable_solve_duration());
+  ToProto(solve_duration, proto->mutable_solve_duration());
   if (detail == ReportDetail::kBrief) return;
   proto->set_method(ToProto(report.method));
   proto->set_kkt_residual(report.kkt_residual);

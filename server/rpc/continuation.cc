@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "convert/duration.h"
 #include "convert/geometry.h"
 #include "convert/goal.h"
 #include "gelenk/base/violations.h"
@@ -32,6 +33,12 @@ std::string WriteContinuation(const Session& session, InstructionSet level) {
   convert::ToProto(snapshot.state.goals, proto.mutable_goals());
   convert::ToProto(snapshot.state.world_from_skeleton,
                    proto.mutable_world_from_skeleton());
+  const JointMotion& motion = snapshot.motion;
+  if (motion.capture_time) {
+    convert::ToProto(*motion.capture_time, proto.mutable_capture_time());
+    proto.mutable_velocity()->Assign(motion.velocity.begin(),
+                                     motion.velocity.end());
+  }
   return proto.SerializeAsString();
 }
 
@@ -49,6 +56,11 @@ absl::StatusOr<Continuation> ReadContinuation(const std::string& bytes,
   continuation.goals = *std::move(goals);
   continuation.world_from_skeleton =
       convert::FromProto(proto.world_from_skeleton());
+  if (proto.has_capture_time()) {
+    continuation.motion.capture_time = convert::FromProto(proto.capture_time());
+    continuation.motion.velocity = Eigen::Map<const Eigen::VectorXd>(
+        proto.velocity().data(), proto.velocity_size());
+  }
   const std::string name(InstructionSetName(level));
   if (proto.build() != BuildId()) {
     continuation.inexact_because = absl::StrCat(

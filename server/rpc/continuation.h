@@ -17,6 +17,7 @@ namespace gelenk::server {
 struct Continuation {
   std::vector<Goal> goals;
   RigidTransform world_from_skeleton;
+  JointMotion motion;
   // Empty when going on is exact, else why it is not.
   std::string inexact_because;
 };

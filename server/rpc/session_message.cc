@@ -7,6 +7,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
+#include "convert/duration.h"
 #include "convert/geometry.h"
 #include "convert/goal.h"
 #include "convert/pose.h"
@@ -68,7 +69,7 @@ absl::Status SetIdleTtl(const v1::Session& proto, const Limits& limits,
                         SessionState& state) {
   state.idle_ttl = std::min(limits.default_idle_ttl, limits.max_idle_ttl);
   if (!proto.has_idle_ttl()) return absl::OkStatus();
-  const absl::Duration ttl = FromProto(proto.idle_ttl());
+  const absl::Duration ttl = convert::FromProto(proto.idle_ttl());
   if (ttl > absl::ZeroDuration()) {
     state.idle_ttl = std::min(ttl, limits.max_idle_ttl);
     return absl::OkStatus();
@@ -80,17 +81,6 @@ absl::Status SetIdleTtl(const v1::Session& proto, const Limits& limits,
 }
 
 }  // namespace
-
-void ToProto(absl::Duration duration, google::protobuf::Duration* proto) {
-  const int64_t seconds =
-      absl::IDivDuration(duration, absl::Seconds(1), &duration);
-  proto->set_seconds(seconds);
-  proto->set_nanos(static_cast<int>(absl::ToInt64Nanoseconds(duration)));
-}
-
-absl::Duration FromProto(const google::protobuf::Duration& proto) {
-  return absl::Seconds(proto.seconds()) + absl::Nanoseconds(proto.nanos());
-}
 
 void ToProto(absl::Time time, google::protobuf::Timestamp* proto) {
   const int64_t nanos = absl::ToUnixNanos(time);
@@ -109,7 +99,7 @@ void ToProto(const Session& session, bool draining, v1::Session* proto) {
   convert::ToProto(state.world_from_skeleton,
                    proto->mutable_world_from_skeleton());
   proto->set_affinity_key(session.affinity_key());
-  ToProto(state.idle_ttl, proto->mutable_idle_ttl());
+  convert::ToProto(state.idle_ttl, proto->mutable_idle_ttl());
   ToProto(snapshot.expire_time, proto->mutable_expire_time());
   ToProto(session.create_time(), proto->mutable_create_time());
   proto->set_state(draining ? v1::Session::STATE_DRAINING

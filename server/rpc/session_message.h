@@ -33,8 +33,6 @@ absl::Status UpdateState(const v1::UpdateSessionRequest& request,
 // that this server never gave.
 absl::StatusOr<std::optional<int64_t>> RevisionOf(const std::string& etag);
 
-void ToProto(absl::Duration duration, google::protobuf::Duration* proto);
-absl::Duration FromProto(const google::protobuf::Duration& proto);
 void ToProto(absl::Time time, google::protobuf::Timestamp* proto);
 
 }  // namespace gelenk::server

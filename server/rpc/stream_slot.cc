@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "convert/duration.h"
 #include "convert/geometry.h"
 #include "convert/goal.h"
 #include "convert/pose.h"
@@ -53,6 +54,9 @@ absl::Status FrameFromProto(const v1::TargetFrame& proto, InputFrame& frame) {
       update.target = value;
     }
     frame.updates.push_back(update);
+  }
+  if (proto.has_capture_time()) {
+    frame.capture_time = convert::FromProto(proto.capture_time());
   }
   if (proto.has_goal_patch()) {
     frame.patch = [&patch = proto.goal_patch()](absl::Span<const Goal> goals) {
@@ -105,11 +109,15 @@ absl::StatusOr<ResumePoint> ReadResumePoint(const v1::PoseFrame& from,
 
 absl::Status Resume(Session& session, DriverId driver,
                     const ResumePoint& point) {
-  const auto& continuation = point.continuation;
-  return session.Resume(
-      driver, point.positions, point.sequence_number,
-      continuation ? &continuation->goals : nullptr,
-      continuation ? &continuation->world_from_skeleton : nullptr);
+  ResumeState state;
+  state.positions = point.positions;
+  state.sequence_number = point.sequence_number;
+  if (point.continuation) {
+    state.goals = &point.continuation->goals;
+    state.world_from_skeleton = &point.continuation->world_from_skeleton;
+    state.motion = &point.continuation->motion;
+  }
+  return session.Resume(driver, state);
 }
 
 }  // namespace
@@ -211,7 +219,8 @@ absl::Status StreamSlot::Answer(IkSolver& solver, absl::Time read_time,
                    answer->mutable_report());
   answer->set_merged_frame_count(taken_ - 1);
   AddExtras(answer);
-  ToProto(solved_.end_time - read_time, answer->mutable_server_duration());
+  convert::ToProto(solved_.end_time - read_time,
+                   answer->mutable_server_duration());
   taken_ = 0;
   ++answered_;
   return absl::OkStatus();

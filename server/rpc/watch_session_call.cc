@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "absl/time/clock.h"
+#include "convert/duration.h"
 #include "convert/pose.h"
 #include "server/rpc/session_message.h"
 #include "server/rpc/status.h"
@@ -61,8 +62,9 @@ absl::Status WatchSessionCall::Open() {
       state_->sessions.Find(kDefaultTenant, request_.name(), absl::Now());
   if (!session.ok()) return session.status();
   session_ = *session;
-  interval_ = request_.has_min_interval() ? FromProto(request_.min_interval())
-                                          : kDefaultInterval;
+  interval_ = request_.has_min_interval()
+                  ? convert::FromProto(request_.min_interval())
+                  : kDefaultInterval;
   interval_ = std::clamp(interval_, kLeastInterval, kMostInterval);
   return absl::OkStatus();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "absl/types/span.h"
 #include "gelenk/ik/goal.h"
 #include "gelenk/math/rigid_transform.h"
@@ -30,12 +31,15 @@ struct InputFrame {
       patch;
   std::vector<GoalUpdate> updates;
   std::optional<RigidTransform> world_from_skeleton;
+  // On the client's clock; bounds the joints' speed where the session wants it.
+  std::optional<absl::Duration> capture_time;
 
   void Clear() {
     sequence_number.reset();
     patch = nullptr;
     updates.clear();
     world_from_skeleton.reset();
+    capture_time.reset();
   }
 };
 

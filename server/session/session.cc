@@ -6,6 +6,7 @@
 #include "gelenk/base/violations.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/skeleton/joint_check.h"
+#include "gelenk/skeleton/pose.h"
 #include "server/clock.h"
 
 namespace gelenk::server {
@@ -49,6 +50,18 @@ absl::Status CheckUpdates(const IkProblem& problem, InputFrame& frame) {
                       violations);
   }
   return violations.ToStatus();
+}
+
+void CheckMotion(const Skeleton& skeleton, const JointMotion& motion,
+                 Violations& violations) {
+  if (!motion.capture_time) return;
+  if (motion.velocity.size() == skeleton.velocity_count() &&
+      motion.velocity.allFinite()) {
+    return;
+  }
+  violations.Add("velocity",
+                 absl::StrCat("want ", skeleton.velocity_count(),
+                              " finite numbers, got ", motion.velocity.size()));
 }
 
 }  // namespace
@@ -104,21 +117,23 @@ absl::Status Session::CheckDriverLocked(DriverId driver) const {
       absl::StrCat("session: ", name_, " was taken over by another driver"));
 }
 
-absl::Status Session::Resume(DriverId driver, const Eigen::VectorXd& positions,
-                             int64_t sequence_number,
-                             const std::vector<Goal>* goals,
-                             const RigidTransform* world_from_skeleton) {
+absl::Status Session::Resume(DriverId driver, const ResumeState& state) {
   absl::MutexLock lock(&mutex_);
   if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
     return status;
   }
-  RigidTransform place = world_from_skeleton ? *world_from_skeleton
-                                             : problem_.world_from_skeleton();
+  RigidTransform place = state.world_from_skeleton != nullptr
+                             ? *state.world_from_skeleton
+                             : problem_.world_from_skeleton();
   Violations violations;
   CheckAndNormalize("world_from_skeleton", place, violations);
+  if (state.motion != nullptr) {
+    CheckMotion(skeleton(), *state.motion, violations);
+  }
   if (!violations.empty()) return violations.ToStatus();
-  if (goals != nullptr) {
-    absl::StatusOr<IkProblem> problem = trees_->CreateProblem(*goals, options_);
+  if (state.goals != nullptr) {
+    absl::StatusOr<IkProblem> problem =
+        trees_->CreateProblem(*state.goals, options_);
     if (!problem.ok()) return problem.status();
     problem_ = *std::move(problem);
     // The driver cannot know these from its create request.
@@ -126,8 +141,9 @@ absl::Status Session::Resume(DriverId driver, const Eigen::VectorXd& positions,
     ++revision_;
   }
   problem_.SetWorldFromSkeleton(place);
-  positions_ = positions;
-  sequence_number_ = sequence_number;
+  positions_ = state.positions;
+  sequence_number_ = state.sequence_number;
+  motion_ = state.motion != nullptr ? *state.motion : JointMotion();
   cold_ = false;
   ++version_;
   return absl::OkStatus();
@@ -162,6 +178,7 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
   }
 
   // Nothing can fail from here on.
+  capture_time_ = frame.capture_time;
   if (patched) {
     problem_ = *std::move(patched);
     drifted_ = true;
@@ -204,16 +221,36 @@ absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
   SolverOptions options = options_;
   if (!whole) options.detail = ReportDetail::kBrief;
   const absl::Time begin = Now();
+  const StepBounds* bounds = SpeedBoundsLocked(frame);
   solver.Solve(problem_, options, cold_ ? SolveStart::kCold : SolveStart::kWarm,
-               positions_, frame.report);
+               positions_, frame.report, bounds);
   frame.end_time = Now();
   frame.solve_duration = frame.end_time - begin;
   cold_ = false;
   ++version_;
   frame.positions = positions_;
   frame.detail = options.detail;
-  frame.needs_continuation = drifted_ || partly_named_;
+  frame.needs_continuation = drifted_ || partly_named_ || options_.limit_speed;
+  if (options_.limit_speed) NoteMotionLocked(frame);
   return absl::OkStatus();
+}
+
+const StepBounds* Session::SpeedBoundsLocked(SolvedFrame& frame) const {
+  if (!options_.limit_speed) return nullptr;
+  frame.start = positions_;
+  if (!capture_time_ || !motion_.capture_time || cold_) return nullptr;
+  SpeedLimits(skeleton(), *capture_time_ - *motion_.capture_time,
+              motion_.velocity, frame.bounds);
+  return &frame.bounds;
+}
+
+void Session::NoteMotionLocked(SolvedFrame& frame) {
+  const std::optional<absl::Duration> before = motion_.capture_time;
+  motion_.velocity.setZero(skeleton().velocity_count());
+  motion_.capture_time = capture_time_;
+  if (!before || !capture_time_ || *capture_time_ <= *before) return;
+  Difference(skeleton(), frame.start, positions_, motion_.velocity);
+  motion_.velocity /= absl::ToDoubleSeconds(*capture_time_ - *before);
 }
 
 void Session::CopyPositions(Eigen::VectorXd& positions) const {
@@ -228,7 +265,7 @@ int64_t Session::sequence_number() const {
 
 SessionSnapshot Session::Snapshot() const {
   absl::MutexLock lock(&mutex_);
-  return {StateLocked(), last_driven_ + idle_ttl_, revision_};
+  return {StateLocked(), last_driven_ + idle_ttl_, revision_, motion_};
 }
 
 SessionState Session::StateLocked() const {
@@ -266,6 +303,7 @@ absl::Status Session::Update(
   options_ = state.options;
   positions_ = std::move(state.positions);
   cold_ = state.cold;
+  motion_ = JointMotion();
   idle_ttl_ = state.idle_ttl;
   last_driven_ = now;
   drifted_ = true;
@@ -306,7 +344,7 @@ size_t Session::ByteSize() const {
   absl::MutexLock lock(&mutex_);
   return sizeof(*this) + name_.capacity() + skeleton_name_.capacity() +
          affinity_key_.capacity() + problem_.ByteSize() - sizeof(problem_) +
-         positions_.size() * sizeof(double);
+         (positions_.size() + motion_.velocity.size()) * sizeof(double);
 }
 
 }  // namespace gelenk::server

@@ -40,11 +40,31 @@ struct SessionState {
   absl::Duration idle_ttl = absl::Minutes(10);
 };
 
+// How the joints of a session moved last: what the speed limits of the next
+// frame start from. Kept only where SolverOptions::limit_speed asks for it.
+struct JointMotion {
+  // Of the last frame that was solved, on the client's clock.
+  std::optional<absl::Duration> capture_time;
+  // Size velocity_count, or none.
+  Eigen::VectorXd velocity;
+};
+
 // A copy of a session for those who read it.
 struct SessionSnapshot {
   SessionState state;
   absl::Time expire_time;
   int64_t revision = 0;
+  JointMotion motion;
+};
+
+// Where a driver last saw a session.
+struct ResumeState {
+  Eigen::VectorXd positions;
+  int64_t sequence_number = 0;
+  // Null where the session's own count.
+  const std::vector<Goal>* goals = nullptr;
+  const RigidTransform* world_from_skeleton = nullptr;
+  const JointMotion* motion = nullptr;
 };
 
 // What a solve gave; reused from frame to frame.
@@ -54,6 +74,9 @@ struct SolvedFrame {
   ReportDetail detail = ReportDetail::kBrief;
   absl::Duration solve_duration;
   absl::Time end_time;
+  // Working memory for sessions with speed limits.
+  Eigen::VectorXd start;
+  StepBounds bounds;
   // The session holds more than a driver could tell from its last frame and its
   // create request: give it a continuation.
   bool needs_continuation = false;
@@ -84,11 +107,8 @@ class Session {
   // End.
   absl::Status CheckDriver(DriverId driver) const;
 
-  // Puts the session where a driver last saw it: pose and sequence number, and
-  // goals and place when given.
-  absl::Status Resume(DriverId driver, const Eigen::VectorXd& positions,
-                      int64_t sequence_number, const std::vector<Goal>* goals,
-                      const RigidTransform* world_from_skeleton);
+  // Puts the session where a driver last saw it.
+  absl::Status Resume(DriverId driver, const ResumeState& state);
 
   // Takes a frame's targets, without solving. A frame with any fault changes
   // nothing but uses up its sequence number. Allocates nothing without a patch.
@@ -135,6 +155,12 @@ class Session {
  private:
   absl::Status CheckDriverLocked(DriverId driver) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // What the speed limits leave for the next solve; null where there are none.
+  const StepBounds* SpeedBoundsLocked(SolvedFrame& frame) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Takes note of how the joints moved from `frame.start`.
+  void NoteMotionLocked(SolvedFrame& frame)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   SessionState StateLocked() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const std::string name_;
@@ -155,6 +181,9 @@ class Session {
   int64_t sequence_number_ ABSL_GUARDED_BY(mutex_) = 0;
   uint64_t version_ ABSL_GUARDED_BY(mutex_) = 0;
   int64_t revision_ ABSL_GUARDED_BY(mutex_) = 1;
+  // Of the newest frame; and what the last solved one left.
+  std::optional<absl::Duration> capture_time_ ABSL_GUARDED_BY(mutex_);
+  JointMotion motion_ ABSL_GUARDED_BY(mutex_);
   // Weights, goals or place were changed by frames.
   bool drifted_ ABSL_GUARDED_BY(mutex_) = false;
   // The last frame left some goal where it was.

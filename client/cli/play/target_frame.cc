@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_format.h"
 #include "client/cli/play/clip_goals.h"
+#include "convert/duration.h"
 #include "convert/geometry.h"
 #include "convert/goal.h"
 
@@ -13,15 +14,6 @@ namespace {
 
 // A command that was killed leaves its session behind for no longer.
 constexpr int kIdleSeconds = 60;
-
-void SetDuration(absl::Duration duration, google::protobuf::Duration* proto) {
-  proto->set_seconds(absl::IDivDuration(duration, absl::Seconds(1), &duration));
-  proto->set_nanos(static_cast<int>(absl::ToInt64Nanoseconds(duration)));
-}
-
-absl::Duration ToDuration(const google::protobuf::Duration& proto) {
-  return absl::Seconds(proto.seconds()) + absl::Nanoseconds(proto.nanos());
-}
 
 void SetTarget(const GoalTarget& target, v1::GoalTarget* proto) {
   if (const auto* position = std::get_if<Eigen::Vector3d>(&target)) {
@@ -56,7 +48,8 @@ v1::TargetFrame TargetFrameWriter::Write(int frame) {
   TargetsAt(*playback_.skeleton, playback_.goals, world_from_joints_, targets_);
   v1::TargetFrame message;
   message.set_sequence_number(frame + 1);
-  SetDuration(playback_.frame_time * frame, message.mutable_capture_time());
+  convert::ToProto(playback_.frame_time * frame,
+                   message.mutable_capture_time());
   for (size_t i = 0; i < targets_.size(); ++i) {
     v1::GoalTarget* target = message.add_targets();
     target->set_goal_index(static_cast<int>(i));
@@ -99,7 +92,7 @@ absl::Status TakeAnswer(const v1::PoseFrame& message, Playback* playback) {
   answer.iteration_count = report.iteration_count();
   answer.restart_count = report.restart_count();
   answer.merged_frame_count = message.merged_frame_count();
-  answer.solve_duration = ToDuration(report.solve_duration());
+  answer.solve_duration = convert::FromProto(report.solve_duration());
   playback->answered_poses.col(frame) = Eigen::Map<const Eigen::VectorXd>(
       message.pose().positions().data(), position_count);
   return absl::OkStatus();

@@ -53,7 +53,7 @@ absl::Status IkSolver::Check(const IkProblem& problem,
 
 void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
                      SolveStart start, VectorView positions,
-                     SolveReport& report) {
+                     SolveReport& report, const StepBounds* bounds) {
   Deadline deadline;
   StopCondition stop;
   if (options.time_limit && clock_ != nullptr) {
@@ -71,7 +71,7 @@ void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
       return minimal_change_.Solve(problem, options, positions, report, stop);
     default:
       return levenberg_marquardt_.Solve(problem, options, start, positions,
-                                        report, stop);
+                                        report, stop, bounds);
   }
 }
 

@@ -15,6 +15,7 @@
 #include "gelenk/ik/newton_solver.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
+#include "gelenk/ik/step_bounds.h"
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
@@ -37,9 +38,10 @@ class IkSolver {
 
   // Moves `positions` (size position_count, checked) from the start to the
   // solution; report.method says what ran. `options` must have passed
-  // CheckSolverOptions, both together Check.
+  // CheckSolverOptions, both together Check. `bounds` may be null.
   void Solve(const IkProblem& problem, const SolverOptions& options,
-             SolveStart start, VectorView positions, SolveReport& report);
+             SolveStart start, VectorView positions, SolveReport& report,
+             const StepBounds* bounds = nullptr);
 
   InstructionSet instruction_set() const {
     return levenberg_marquardt_.instruction_set();

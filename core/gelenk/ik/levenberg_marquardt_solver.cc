@@ -123,7 +123,7 @@ LevenbergMarquardtSolver::LevenbergMarquardtSolver(InstructionSet level)
 
 void LevenbergMarquardtSolver::Reserve(const IkProblem& problem,
                                        const kernel::TreeLayout& tree) {
-  const SerialChain* chain = problem.tree().chain();
+  const SerialChain* chain = chain_;
   const auto carve = [&](Carver& carver) {
     if (chain == nullptr) {
       workspace_ = Carve(tree, carver);
@@ -161,8 +161,8 @@ kernel::Attempt LevenbergMarquardtSolver::Run(const IkProblem& problem,
                                               const kernel::Settings& settings,
                                               VectorView positions) {
   const kernel::TaskTarget* targets = problem.targets().data();
-  if (const SerialChain* chain = problem.tree().chain()) {
-    return run_chain_(chain->Layout(), targets[0], settings, chain_workspace_,
+  if (chain_ != nullptr) {
+    return run_chain_(chain_->Layout(), targets[0], settings, chain_workspace_,
                       positions.data());
   }
   return attempt_(tree, targets, settings, workspace_, positions.data());
@@ -172,20 +172,33 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
                                      const SolverOptions& options,
                                      SolveStart start, VectorView positions,
                                      SolveReport& report,
-                                     const StopCondition& stop) {
+                                     const StopCondition& stop,
+                                     const StepBounds* bounds) {
+  const bool bounded = start == SolveStart::kWarm &&
+                       (options.max_step.has_value() || bounds != nullptr);
+  const auto narrow = [&](const kernel::TreeLayout& tree,
+                          kernel::Settings& settings) {
+    if (!bounded) return;
+    bounds_.Narrow(problem, tree, options.max_step, bounds, positions,
+                   settings);
+  };
   const SerialArm* arm = problem.arm();
-  if (arm != nullptr &&
-      SolveAsArm(problem, *arm, options, start, positions, report, stop)) {
+  if (arm != nullptr && SolveAsArm(problem, *arm, options, start, positions,
+                                   report, stop, narrow)) {
     return;
   }
   const kernel::TreeLayout tree = problem.tree().Layout();
   const Skeleton& skeleton = problem.skeleton();
+  // The kernel of chains knows no bounds of turns.
+  chain_ = bounded ? nullptr : problem.tree().chain();
   Reserve(problem, tree);
   std::copy(positions.begin(), positions.end(), start_.begin());
   ClampToLimits(skeleton, positions);
 
   kernel::Settings settings = SettingsFor(problem, tree, options, stop);
-  const int budget = RestartBudget(options, start);
+  narrow(tree, settings);
+  // Starts from elsewhere would be out of bounds.
+  const int budget = bounded ? 0 : RestartBudget(options, start);
   settings.impatient = budget > 0;
   kernel::Attempt attempt = Run(problem, tree, settings, positions);
   report.iteration_count = attempt.iterations;
@@ -209,7 +222,7 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
 bool LevenbergMarquardtSolver::SolveAsArm(
     const IkProblem& problem, const SerialArm& arm,
     const SolverOptions& options, SolveStart start, VectorView positions,
-    SolveReport& report, const StopCondition& stop) {
+    SolveReport& report, const StopCondition& stop, const Narrow& narrow) {
   const kernel::TreeLayout tree = problem.tree().Layout();
   start_.assign(positions.begin(), positions.end());
   ClampToLimits(problem.skeleton(), positions);
@@ -221,8 +234,9 @@ bool LevenbergMarquardtSolver::SolveAsArm(
   }
   kernel::ArmSettings settings;
   kernel::ArmTarget target;
-  arm.Prepare(SettingsFor(problem, tree, options, stop), problem.targets()[0],
-              settings);
+  kernel::Settings tree_settings = SettingsFor(problem, tree, options, stop);
+  narrow(tree, tree_settings);
+  arm.Prepare(tree_settings, problem.targets()[0], settings);
   arm.Prepare(problem.targets()[0], target);
   const ArmRequest request = {arm, settings, start,
                               ArmRestartBudget(options, start),

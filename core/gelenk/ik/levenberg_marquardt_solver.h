@@ -20,6 +20,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
+#include "gelenk/ik/column_bounds.h"
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/instruction_set.h"
 #include "gelenk/ik/kernel/arm_layout.h"
@@ -27,6 +29,7 @@
 #include "gelenk/ik/kernel/tree_layout.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
+#include "gelenk/ik/step_bounds.h"
 #include "gelenk/ik/stop_condition.h"
 #include "gelenk/skeleton/pose.h"
 
@@ -43,19 +46,27 @@ class LevenbergMarquardtSolver {
   // inside. On any outcome but kConverged the result is the closest pose found.
   // Joints that move no goal stay where they are. Quaternions stay in the
   // hemisphere of the start. `options` must have passed CheckSolverOptions.
+  // Bounds of the move, from options.max_step and `bounds` (may be null), count
+  // for a warm start, which then has no restarts; they hold from the start once
+  // it is inside its limits.
   void Solve(const IkProblem& problem, const SolverOptions& options,
              SolveStart start, VectorView positions, SolveReport& report,
-             const StopCondition& stop = {});
+             const StopCondition& stop = {},
+             const StepBounds* bounds = nullptr);
 
   InstructionSet instruction_set() const { return level_; }
 
  private:
+  // Puts the bounds of a frame into settings.
+  using Narrow =
+      absl::FunctionRef<void(const kernel::TreeLayout&, kernel::Settings&)>;
+
   // By the kernels of arms; false, and nothing done, where they do not take the
   // start.
   bool SolveAsArm(const IkProblem& problem, const SerialArm& arm,
                   const SolverOptions& options, SolveStart start,
                   VectorView positions, SolveReport& report,
-                  const StopCondition& stop);
+                  const StopCondition& stop, const Narrow& narrow);
   void Reserve(const IkProblem& problem, const kernel::TreeLayout& tree);
   // One attempt, by the kernel that fits the problem.
   kernel::Attempt Run(const IkProblem& problem, const kernel::TreeLayout& tree,
@@ -82,6 +93,9 @@ class LevenbergMarquardtSolver {
   std::vector<double> memory_;
   kernel::Workspace workspace_ = {};
   kernel::ChainWorkspace chain_workspace_ = {};
+  // Of the problem that is solved, where the kernel of chains fits.
+  const SerialChain* chain_ = nullptr;
+  ColumnBounds bounds_;
   std::vector<double> start_;
   std::vector<double> best_;
   std::vector<double> change_;

@@ -41,6 +41,9 @@ absl::Status CheckSolverOptions(const SolverOptions& options) {
                  violations);
   CheckTolerance("rotation_tolerance_rad", options.rotation_tolerance_rad,
                  violations);
+  if (options.max_step) {
+    CheckTolerance("max_step", *options.max_step, violations);
+  }
   if (options.time_limit && !(*options.time_limit > absl::ZeroDuration())) {
     violations.Add("time_limit",
                    absl::StrCat("want more than 0, got ",

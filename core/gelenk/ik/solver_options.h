@@ -49,6 +49,12 @@ struct SolverOptions {
   double position_tolerance_m = 1e-4;
   double rotation_tolerance_rad = 1e-3;
   ReportDetail detail = ReportDetail::kWhole;
+  // Largest change of one degree of freedom in a solve from a warm start, rad
+  // or m; see StepBounds. Levenberg-Marquardt only.
+  std::optional<double> max_step;
+  // Sessions only: keep JointLimits::max_velocity and max_acceleration between
+  // frames. Levenberg-Marquardt only.
+  bool limit_speed = false;
   // An interactive guard, honoured where the solver was given a clock. Answers
   // that hit it do not repeat.
   std::optional<absl::Duration> time_limit;

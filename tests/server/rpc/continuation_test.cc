@@ -56,8 +56,8 @@ TEST(ContinuationTest, ComesRoundExactly) {
   Eigen::VectorXd positions;
   drifted->CopyPositions(positions);
   ASSERT_TRUE(other
-                  ->Resume(1, positions, drifted->sequence_number(),
-                           &read->goals, &read->world_from_skeleton)
+                  ->Resume(1, {positions, drifted->sequence_number(),
+                               &read->goals, &read->world_from_skeleton})
                   .ok());
   // The etag counts changes, which are not the same.
   const auto without_etag = [](std::string state) {

@@ -92,7 +92,7 @@ TEST(SessionDriverTest, WhoLostItChangesNothing) {
   ApplyAs(*session, kFirst);
   SolveAs(*session, kFirst);
   const Eigen::VectorXd elsewhere = Eigen::Vector3d(1, 1, 1);
-  EXPECT_FALSE(session->Resume(kFirst, elsewhere, 9, nullptr, nullptr).ok());
+  EXPECT_FALSE(session->Resume(kFirst, {elsewhere, 9, nullptr, nullptr}).ok());
   EXPECT_EQ(StateOf(*session), before);
 }
 

@@ -37,7 +37,7 @@ Eigen::VectorXd SolveFrame(Session& session, InputFrame frame) {
 TEST(SessionResumeTest, TakesPoseAndSequenceNumber) {
   const auto session = DrivenSession();
   const Eigen::VectorXd positions = Eigen::Vector3d(0.3, 0.2, 0.1);
-  ASSERT_TRUE(session->Resume(kDriver, positions, 41, nullptr, nullptr).ok());
+  ASSERT_TRUE(session->Resume(kDriver, {positions, 41, nullptr, nullptr}).ok());
   Eigen::VectorXd now;
   session->CopyPositions(now);
   EXPECT_EQ(now, positions);
@@ -54,7 +54,7 @@ TEST(SessionResumeTest, MayGoBackToAnEarlierFrame) {
   InputFrame frame = ReachFrame(100, 0.5, 0.5);
   ASSERT_TRUE(session->Apply(kDriver, frame, kNow).ok());
   const Eigen::VectorXd positions = Eigen::Vector3d(0.3, 0.2, 0.1);
-  ASSERT_TRUE(session->Resume(kDriver, positions, 90, nullptr, nullptr).ok());
+  ASSERT_TRUE(session->Resume(kDriver, {positions, 90, nullptr, nullptr}).ok());
   EXPECT_EQ(session->sequence_number(), 90);
 }
 
@@ -65,7 +65,7 @@ TEST(SessionResumeTest, EndsAColdStart) {
   ASSERT_TRUE(session->Claim(kDriver, false, kNow).ok());
   ASSERT_TRUE(session->IsHeavy());
   ASSERT_TRUE(
-      session->Resume(kDriver, cold.positions, 1, nullptr, nullptr).ok());
+      session->Resume(kDriver, {cold.positions, 1, nullptr, nullptr}).ok());
   EXPECT_FALSE(session->IsHeavy());
 }
 
@@ -86,8 +86,8 @@ TEST(SessionResumeTest, GoesOnBitByBit) {
   const SessionState known = first->Snapshot().state;
   const auto second = DrivenSession();
   ASSERT_TRUE(second
-                  ->Resume(kDriver, positions, 10, &known.goals,
-                           &known.world_from_skeleton)
+                  ->Resume(kDriver, {positions, 10, &known.goals,
+                                     &known.world_from_skeleton})
                   .ok());
   for (int i = 11; i <= 20; ++i) {
     ASSERT_EQ(SolveFrame(*first, frame_at(i)), SolveFrame(*second, frame_at(i)))
@@ -102,7 +102,7 @@ TEST(SessionResumeTest, RefusesBadGoalsAndChangesNothing) {
   goals[1].weight = -1;
   const Eigen::VectorXd positions = Eigen::Vector3d(0.3, 0.2, 0.1);
   EXPECT_THAT(
-      ViolationLines(session->Resume(kDriver, positions, 9, &goals, nullptr)),
+      ViolationLines(session->Resume(kDriver, {positions, 9, &goals, nullptr})),
       ElementsAre("goals[1].weight: want a finite number >= 0, got -1"));
   EXPECT_EQ(StateOf(*session), before);
 }
@@ -114,7 +114,7 @@ TEST(SessionResumeTest, RefusesABadPlaceAndChangesNothing) {
   const RigidTransform place{Eigen::Quaterniond(0, 0, 0, 0), {0, 0, 0}};
   const Eigen::VectorXd positions = Eigen::Vector3d(0.3, 0.2, 0.1);
   EXPECT_THAT(
-      ViolationLines(session->Resume(kDriver, positions, 9, &goals, &place)),
+      ViolationLines(session->Resume(kDriver, {positions, 9, &goals, &place})),
       ElementsAre("world_from_skeleton.rotation: want a unit quaternion, got "
                   "(0, 0, 0, 0)"));
   EXPECT_EQ(StateOf(*session), before);

@@ -141,9 +141,9 @@ TEST_F(SessionSolveTest, AnUpdateBySomebodyElseNeedsOneForGood) {
 TEST_F(SessionSolveTest, GoalsThatCameWithAResumeNeedOneForGood) {
   const std::vector<Goal> goals = ArmGoals();
   Eigen::VectorXd positions = Eigen::Vector3d(0.2, 0.2, 0.2);
-  ASSERT_TRUE(session_->Resume(kDriver, positions, 3, nullptr, nullptr).ok());
+  ASSERT_TRUE(session_->Resume(kDriver, {positions, 3, nullptr, nullptr}).ok());
   EXPECT_FALSE(Solve(WholeFrame(4, 0.8, 0.5)).needs_continuation);
-  ASSERT_TRUE(session_->Resume(kDriver, positions, 4, &goals, nullptr).ok());
+  ASSERT_TRUE(session_->Resume(kDriver, {positions, 4, &goals, nullptr}).ok());
   EXPECT_TRUE(Solve(WholeFrame(5, 0.8, 0.5)).needs_continuation);
 }
 

@@ -13,6 +13,10 @@
 namespace gelenk::kernel::GELENK_KERNEL_LEVEL {
 namespace {
 
+// Bounds of a turn and limits of a rotation are brought together in so many
+// rounds; where they meet at a slant each leaves a part of the gap before.
+constexpr int kBoundRounds = 16;
+
 constexpr int kLanes = GELENK_KERNEL_LANES;
 static_assert(kRowAlignment % kLanes == 0);
 typedef double Pack __attribute__((vector_size(8 * kLanes), may_alias));
@@ -554,10 +558,39 @@ class Solver {
         1 / __builtin_sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2] +
                            out[3] * out[3]);
     for (int k = 0; k < 4; ++k) q[k] = out[k] * inverse;
-    if (tree_.nodes[i].limits_rotation &&
-        !IsWellInside(tree_.rotation_limits[i], q)) {
+    // The nearest rotation that keeps both bounds, by turns; limits come last,
+    // and hold whatever else was asked for.
+    for (int round = 0; round < kBoundRounds; ++round) {
+      const bool cut = settings_.turn_start != nullptr &&
+                       KeepTurn(i, settings_.turn_start + (q - q_), q);
+      if (round > 0 && !cut) break;
+      if (!tree_.nodes[i].limits_rotation ||
+          IsWellInside(tree_.rotation_limits[i], q)) {
+        break;
+      }
       ClampToRotationLimit(tree_.rotation_limits[i], q);
     }
+  }
+
+  // Cuts the turn from `start` to `q` where it is larger than its bound; true
+  // when it was.
+  GELENK_INLINE bool KeepTurn(int i, const double* start, double* q) {
+    const double cosine = settings_.turn_cosine[i];
+    const double w =
+        start[0] * q[0] + start[1] * q[1] + start[2] * q[2] + start[3] * q[3];
+    if (Abs(w) >= cosine) return false;
+    // q without its part along the start, which is at right angles to it.
+    double across[4];
+    double length2 = 0;
+    for (int k = 0; k < 4; ++k) {
+      across[k] = q[k] - w * start[k];
+      length2 += across[k] * across[k];
+    }
+    const double sine =
+        settings_.turn_sine[i] / __builtin_sqrt(Max(length2, 1e-300));
+    const double along = w < 0 ? -cosine : cosine;
+    for (int k = 0; k < 4; ++k) q[k] = along * start[k] + sine * across[k];
+    return true;
   }
 
   const TreeLayout& tree_;

@@ -145,6 +145,11 @@ struct Settings {
   // narrower ones. The start must be inside.
   const double* lower;
   const double* upper;
+  // Null, or q from which rotations may turn no further than a bound: per node
+  // the cosine and the sine of half of it.
+  const double* turn_start;
+  const double* turn_cosine;
+  const double* turn_sine;
   int max_iterations;
   // Give up as soon as a window of iterations does not halve the error: there
   // are other starts to try.
