@@ -17,12 +17,16 @@ void AppendBits(const Number* numbers, size_t count, std::string& bits) {
 std::string BitsOf(absl::Span<const EffectorTask> tasks) {
   std::string bits;
   for (const EffectorTask& task : tasks) {
-    const RigidTransform& frame = task.effector.joint_from_effector;
-    AppendBits(&task.effector.joint, 1, bits);
-    AppendBits(frame.rotation.coeffs().data(), 4, bits);
-    AppendBits(frame.translation.data(), 3, bits);
-    AppendBits(&task.translation, 1, bits);
-    AppendBits(&task.rotation, 1, bits);
+    AppendBits(&task.shape, 1, bits);
+    AppendBits(&task.translation_rows, 1, bits);
+    AppendBits(&task.rotation_rows, 1, bits);
+    AppendBits(&task.frame_count, 1, bits);
+    for (int f = 0; f < task.frame_count; ++f) {
+      const RigidTransform& frame = task.frames[f].joint_from_effector;
+      AppendBits(&task.frames[f].joint, 1, bits);
+      AppendBits(frame.rotation.coeffs().data(), 4, bits);
+      AppendBits(frame.translation.data(), 3, bits);
+    }
   }
   return bits;
 }

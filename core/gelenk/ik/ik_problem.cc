@@ -15,42 +15,10 @@ namespace gelenk {
 namespace {
 
 // The kinds that the solvers know so far.
-bool IsSolved(const Goal& goal) {
-  const GoalKind& kind = goal.kind;
-  if (const auto* rotation = std::get_if<RotationGoal>(&kind)) {
-    return rotation->axes.count() == 3;
-  }
-  if (const auto* pose = std::get_if<PoseGoal>(&kind)) {
-    return pose->rotation_axes.count() == 3;
-  }
-  return std::holds_alternative<PositionGoal>(kind);
-}
-
-bool HasTranslation(const GoalKind& kind) {
-  return !std::holds_alternative<RotationGoal>(kind);
-}
-
-bool HasRotation(const GoalKind& kind) {
-  return !std::holds_alternative<PositionGoal>(kind);
-}
-
-AxisMask AxesOf(const GoalKind& kind) {
-  if (const auto* position = std::get_if<PositionGoal>(&kind)) {
-    return position->axes;
-  }
-  if (const auto* pose = std::get_if<PoseGoal>(&kind)) return pose->axes;
-  return {};
-}
-
-void StoreRotation(const Eigen::Quaterniond& rotation,
-                   kernel::TaskTarget& target) {
-  const Eigen::Matrix3d m = rotation.toRotationMatrix();
-  for (int i = 0; i < 9; ++i) target.world_rotation[i] = m(i / 3, i % 3);
-}
-
-void StoreTranslation(const Eigen::Vector3d& translation,
-                      kernel::TaskTarget& target) {
-  for (int i = 0; i < 3; ++i) target.world_translation[i] = translation[i];
+bool IsSolved(const Skeleton& skeleton, const Goal& goal,
+              const EffectorTask& task) {
+  return task.frame_count > 0 && IsOnOnePath(skeleton, task) &&
+         !std::holds_alternative<PlantGoal>(goal.kind);
 }
 
 }  // namespace
@@ -76,27 +44,33 @@ absl::StatusOr<IkProblem> IkProblem::Create(
     }
     const absl::Status on_skeleton = CheckOn(*skeleton, goal);
     violations.AddStatus(field, on_skeleton);
-    if (!on_skeleton.ok() || !IsSolved(goal)) continue;
-    tasks.push_back({*skeleton->FindEffector(EffectorId(goal.kind)),
-                     HasTranslation(goal.kind), HasRotation(goal.kind)});
+    if (!on_skeleton.ok()) continue;
+    tasks.push_back(std::visit(
+        [&](const auto& kind) { return TaskOf(*skeleton, kind); }, goal.kind));
   }
   if (!violations.empty()) return violations.ToStatus();
-  for (const Goal& goal : goals) {
-    if (IsSolved(goal) && goal.priority == goals[0].priority) continue;
+  for (size_t i = 0; i < goals.size(); ++i) {
+    const Goal& goal = goals[i];
+    if (IsSolved(*skeleton, goal, tasks[i]) &&
+        goal.priority == goals[0].priority) {
+      continue;
+    }
     return absl::UnimplementedError(
         absl::StrCat("goals: no solver yet for ", GoalKindName(goal.kind),
                      " goals of priority ", goal.priority));
   }
   std::shared_ptr<const SparseTree> tree =
       trees ? trees(tasks) : std::make_shared<SparseTree>(*skeleton, tasks);
-  return IkProblem(std::move(skeleton), std::move(goals), std::move(tree));
+  return IkProblem(std::move(skeleton), std::move(goals), std::move(tasks),
+                   std::move(tree));
 }
 
 IkProblem::IkProblem(std::shared_ptr<const Skeleton> skeleton,
-                     std::vector<Goal> goals,
+                     std::vector<Goal> goals, std::vector<EffectorTask> tasks,
                      std::shared_ptr<const SparseTree> tree)
     : skeleton_(std::move(skeleton)),
       goals_(std::move(goals)),
+      tasks_(std::move(tasks)),
       tree_(std::move(tree)),
       targets_(goals_.size()) {
   for (size_t i = 0; i < goals_.size(); ++i) {
@@ -149,33 +123,16 @@ void IkProblem::SetWeight(int goal_index, double weight) {
 }
 
 void IkProblem::RefreshTarget(int goal_index) {
-  const Goal& goal = goals_[goal_index];
-  kernel::TaskTarget& target = targets_[goal_index];
-  if (const auto* position = std::get_if<PositionGoal>(&goal.kind)) {
-    StoreTranslation(position->world_position, target);
-  } else if (const auto* rotation = std::get_if<RotationGoal>(&goal.kind)) {
-    StoreRotation(rotation->world_rotation, target);
-  } else if (const auto* pose = std::get_if<PoseGoal>(&goal.kind)) {
-    StoreTranslation(pose->world_pose.translation, target);
-    StoreRotation(pose->world_pose.rotation, target);
-  }
+  std::visit([&](const auto& kind) { StoreTarget(kind, targets_[goal_index]); },
+             goals_[goal_index].kind);
 }
 
 void IkProblem::RefreshWeights(int goal_index) {
   const Goal& goal = goals_[goal_index];
   kernel::TaskTarget& target = targets_[goal_index];
+  std::visit([&](const auto& kind) { StoreRows(kind, goal.weight, target); },
+             goal.kind);
   target.active = goal.weight > 0;
-  const AxisMask axes = AxesOf(goal.kind);
-  const double counts[3] = {axes.x ? 1.0 : 0.0, axes.y ? 1.0 : 0.0,
-                            axes.z ? 1.0 : 0.0};
-  const PoseGoal* pose = std::get_if<PoseGoal>(&goal.kind);
-  const double rotation_scale = pose ? pose->rotation_scale_m_per_rad : 1;
-  const double root = std::sqrt(goal.weight);
-  for (int k = 0; k < 3; ++k) {
-    target.row_counts[k] = counts[k];
-    target.row_scale[k] = root * counts[k];
-    target.row_scale[3 + k] = root * rotation_scale;
-  }
 }
 
 const SerialArm* IkProblem::arm() const {
@@ -191,6 +148,7 @@ const SerialArm* IkProblem::arm() const {
 size_t IkProblem::ByteSize() const {
   size_t bytes = sizeof(*this) +
                  targets_.capacity() * sizeof(kernel::TaskTarget) +
+                 tasks_.capacity() * sizeof(EffectorTask) +
                  goals_.capacity() * sizeof(Goal);
   for (const Goal& goal : goals_) {
     bytes += goal.id.capacity() + EffectorId(goal.kind).size();

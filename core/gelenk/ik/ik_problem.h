@@ -63,7 +63,8 @@ class IkProblem {
     world_from_skeleton_ = world_from_skeleton;
   }
 
-  // For solvers.
+  // For solvers; by goal.
+  absl::Span<const EffectorTask> tasks() const { return tasks_; }
   const SparseTree& tree() const { return *tree_; }
   absl::Span<const kernel::TaskTarget> targets() const { return targets_; }
   // Not null when the problem is one goal, of a kind and weight that the
@@ -75,6 +76,7 @@ class IkProblem {
 
  private:
   IkProblem(std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
+            std::vector<EffectorTask> tasks,
             std::shared_ptr<const SparseTree> tree);
   // Bring targets_ up to goals_.
   void RefreshTarget(int goal_index);
@@ -82,6 +84,7 @@ class IkProblem {
 
   std::shared_ptr<const Skeleton> skeleton_;
   std::vector<Goal> goals_;
+  std::vector<EffectorTask> tasks_;
   std::shared_ptr<const SparseTree> tree_;
   std::vector<kernel::TaskTarget> targets_;
   RigidTransform world_from_skeleton_;

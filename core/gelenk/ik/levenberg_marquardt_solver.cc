@@ -48,9 +48,12 @@ class Carver {
     used_ += kernel::PaddedRow(count);
     return piece;
   }
-  uint8_t* Bytes(int count) {
-    return reinterpret_cast<uint8_t*>(
-        Doubles((count + sizeof(double) - 1) / sizeof(double)));
+  uint8_t* Bytes(int count) { return Objects<uint8_t>(count); }
+  // Plain ones, not initialised.
+  template <class Object>
+  Object* Objects(int count) {
+    return reinterpret_cast<Object*>(Doubles(static_cast<int>(
+        (count * sizeof(Object) + sizeof(double) - 1) / sizeof(double))));
   }
   size_t used() const { return used_; }
 
@@ -80,6 +83,9 @@ kernel::Workspace Carve(const kernel::TreeLayout& tree, Carver& carver) {
   w.jacobian = carver.Doubles(tree.j_size);
   w.residuals = carver.Doubles(6 * tree.task_count);
   w.effectors = carver.Doubles(3 * tree.task_count);
+  w.frames = carver.Objects<kernel::GoalFrame>(kernel::kMaxGoalFrames *
+                                               tree.shaped_count);
+  w.goal_rows = carver.Objects<kernel::GoalRows>(tree.shaped_count);
   w.h = carver.Doubles(tree.h_size);
   w.gradient = carver.Doubles(tree.column_count);
   w.step = carver.Doubles(tree.column_count);

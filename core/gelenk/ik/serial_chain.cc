@@ -13,6 +13,7 @@ using kernel::NodeType;
 bool IsSerialChain(const kernel::TreeLayout& tree) {
   if (tree.task_count != 1 || tree.node_count == 0) return false;
   const kernel::Task& task = tree.tasks[0];
+  if (task.shape != kernel::GoalShape::kPose) return false;
   if (task.row_begin != 0 || task.row_end != 3) return false;
   return std::all_of(tree.nodes, tree.nodes + tree.node_count,
                      [](const Node& node) {

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <vector>
 
-#include "gelenk/kinematics/forward_kinematics.h"
-#include "gelenk/kinematics/jacobian.h"
+#include "gelenk/ik/goal_linearizer.h"
 #include "gelenk/math/pseudo_inverse.h"
 
 namespace gelenk {
 namespace {
+
+using RowMajorMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // sqrt(det(J J^T)) is the product of J's singular values.
 double Manipulability(const std::vector<Eigen::RowVectorXd>& rows) {
@@ -51,25 +53,24 @@ double WeightedChange(const IkProblem& problem, const ConstVectorView& from,
 void Diagnose(const IkProblem& problem, const ConstVectorView& positions,
               SolveReport& report) {
   const Skeleton& skeleton = problem.skeleton();
-  WorldTransforms frames;
-  ForwardKinematics(skeleton, positions, problem.world_from_skeleton(), frames);
+  GoalLinearizer linearizer;
+  linearizer.MoveTo(problem, positions);
+  kernel::GoalRows rows = {};
   std::vector<Eigen::RowVectorXd> translation_rows;
   std::vector<Eigen::RowVectorXd> rotation_rows;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian;
   for (size_t g = 0; g < problem.goals().size(); ++g) {
     const kernel::TaskTarget& target = problem.targets()[g];
-    const GoalKind& kind = problem.goals()[g].kind;
     if (!target.active) continue;
-    ComputeJacobian(skeleton, positions, frames,
-                    *skeleton.FindEffector(EffectorId(kind)), jacobian);
-    for (int k = 0; k < 3; ++k) {
-      const bool counts = target.row_counts[k] > 0 &&
-                          !std::holds_alternative<RotationGoal>(kind);
-      if (counts) translation_rows.push_back(jacobian.row(k));
-      if (!std::holds_alternative<PositionGoal>(kind) &&
-          target.row_scale[3 + k] > 0) {
-        rotation_rows.push_back(jacobian.row(3 + k));
-      }
+    RowMajorMatrix jacobian(GoalLinearizer::RowCount(target),
+                            skeleton.velocity_count());
+    const int goal = static_cast<int>(g);
+    linearizer.Evaluate(goal, target, rows);
+    linearizer.ComputeJacobian(goal, target, rows, positions, jacobian);
+    for (int r = 0; r < jacobian.rows(); ++r) {
+      const bool translates = r < target.translation_rows;
+      if (target.row_scale[translates ? r : 3] <= 0) continue;
+      (translates ? translation_rows : rotation_rows)
+          .push_back(jacobian.row(r));
     }
   }
   Eigen::MatrixXd all(translation_rows.size() + rotation_rows.size(),

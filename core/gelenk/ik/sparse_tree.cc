@@ -75,7 +75,23 @@ kernel::RotationLimit RotationLimitOf(const Joint& joint) {
   return out;
 }
 
+bool IsAtOrAbove(const Skeleton& skeleton, int ancestor, int joint) {
+  while (joint > ancestor) joint = skeleton.span(joint).parent;
+  return joint == ancestor;
+}
+
 }  // namespace
+
+bool IsOnOnePath(const Skeleton& skeleton, const EffectorTask& task) {
+  int deepest = -1;
+  for (int f = 0; f < task.frame_count; ++f) {
+    deepest = std::max(deepest, task.frames[f].joint);
+  }
+  for (int f = 0; f < task.frame_count; ++f) {
+    if (!IsAtOrAbove(skeleton, task.frames[f].joint, deepest)) return false;
+  }
+  return true;
+}
 
 class SparseTreeBuilder {
  public:
@@ -89,7 +105,11 @@ class SparseTreeBuilder {
         column_of_joint_(skeleton.joint_count(), -1) {}
 
   void Build() {
-    for (EffectorTask& task : tasks_) Shorten(task);
+    for (EffectorTask& task : tasks_) {
+      if (!IsOnOnePath(skeleton_, task)) task = EffectorTask();
+      if (!task.points_only()) continue;
+      for (int f = 0; f < task.frame_count; ++f) Shorten(task.frames[f]);
+    }
     AddNodes();
     PlaceColumns();
     AddMimicAxes();
@@ -110,9 +130,7 @@ class SparseTreeBuilder {
 
   // A point at the origin of a turning joint is not moved by that joint: hang
   // it on the parent.
-  void Shorten(EffectorTask& task) const {
-    if (task.rotation) return;
-    EffectorFrame& effector = task.effector;
+  void Shorten(EffectorFrame& effector) const {
     while (Parent(effector.joint) >= 0) {
       const Joint& joint = skeleton_.joint(effector.joint);
       const bool at_origin =
@@ -140,8 +158,9 @@ class SparseTreeBuilder {
   void AddNodes() {
     std::vector<bool> active(skeleton_.joint_count(), false);
     for (const EffectorTask& task : tasks_) {
-      for (int j = task.effector.joint; j >= 0 && !active[j]; j = Parent(j)) {
-        active[j] = true;
+      for (int f = 0; f < task.frame_count; ++f) {
+        int j = task.frames[f].joint;
+        for (; j >= 0 && !active[j]; j = Parent(j)) active[j] = true;
       }
     }
     for (int j = 0; j < skeleton_.joint_count(); ++j) {
@@ -237,19 +256,52 @@ class SparseTreeBuilder {
     }
   }
 
-  void AddTask(const EffectorTask& effector_task) {
-    kernel::Task task = {};
+  kernel::TaskFrame FrameOnNode(const EffectorFrame& effector) const {
+    kernel::TaskFrame frame = {};
     RigidTransform node_from_joint;
-    task.node = NodeAbove(effector_task.effector.joint, node_from_joint);
+    frame.node = NodeAbove(effector.joint, node_from_joint);
     const RigidTransform node_from_effector =
-        node_from_joint * effector_task.effector.joint_from_effector;
+        node_from_joint * effector.joint_from_effector;
     StoreMatrix(node_from_effector.rotation.toRotationMatrix(),
-                task.node_from_effector_rotation);
+                frame.node_from_frame_rotation);
     StoreVector(node_from_effector.translation,
-                task.node_from_effector_translation);
-    task.row_begin = effector_task.translation ? 0 : 3;
-    task.row_end = effector_task.rotation ? 6 : 3;
+                frame.node_from_frame_translation);
+    return frame;
+  }
 
+  // The rest of a task but its path.
+  kernel::Task MakeTask(const EffectorTask& effector_task) {
+    kernel::Task task = {};
+    task.shape = effector_task.shape;
+    task.frame_begin = static_cast<int>(tree_.frames_.size());
+    task.frame_count = effector_task.frame_count;
+    if (task.shape != kernel::GoalShape::kPose) {
+      task.shaped = tree_.shaped_count_++;
+      task.row_end =
+          effector_task.translation_rows + effector_task.rotation_rows;
+    } else {
+      task.row_begin = effector_task.translation_rows > 0 ? 0 : 3;
+      task.row_end = effector_task.rotation_rows > 0 ? 6 : 3;
+    }
+    task.node = kBase;
+    for (int f = 0; f < task.frame_count; ++f) {
+      const kernel::TaskFrame frame = FrameOnNode(effector_task.frames[f]);
+      if (frame.node >= task.node) {
+        task.node = frame.node;
+        std::copy_n(frame.node_from_frame_rotation, 9,
+                    task.node_from_effector_rotation);
+        std::copy_n(frame.node_from_frame_translation, 3,
+                    task.node_from_effector_translation);
+      }
+      if (task.shape != kernel::GoalShape::kPose) {
+        tree_.frames_.push_back(frame);
+      }
+    }
+    return task;
+  }
+
+  void AddTask(const EffectorTask& effector_task) {
+    kernel::Task task = MakeTask(effector_task);
     std::vector<int> chain;
     for (int n = task.node; n >= 0; n = tree_.nodes_[n].parent) {
       chain.push_back(n);
@@ -330,6 +382,7 @@ class SparseTreeBuilder {
     tree_.path_columns_.shrink_to_fit();
     tree_.followers_.shrink_to_fit();
     tree_.tasks_.shrink_to_fit();
+    tree_.frames_.shrink_to_fit();
     tree_.joints_of_nodes_.shrink_to_fit();
   }
 
@@ -358,13 +411,15 @@ kernel::TreeLayout SparseTree::Layout() const {
           path_columns_.data(),
           followers_.data(),
           tasks_.data(),
+          frames_.data(),
           static_cast<int>(nodes_.size()),
           static_cast<int>(columns_.size()),
           axis_count_,
           static_cast<int>(tasks_.size()),
           h_size_,
           j_size_,
-          position_count_};
+          position_count_,
+          shaped_count_};
 }
 
 size_t SparseTree::ByteSize() const {
@@ -372,7 +427,7 @@ size_t SparseTree::ByteSize() const {
   return sizeof(*this) + bytes(nodes_) + bytes(rotation_limits_) +
          bytes(columns_) + bytes(lower_) + bytes(upper_) +
          bytes(path_columns_) + bytes(followers_) + bytes(tasks_) +
-         bytes(joints_of_nodes_) + bytes(joints_of_columns_) +
+         bytes(frames_) + bytes(joints_of_nodes_) + bytes(joints_of_columns_) +
          (chain_ ? chain_->ByteSize() : 0) + (arm_ ? sizeof(*arm_) : 0);
 }
 

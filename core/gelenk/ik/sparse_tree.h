@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
+#include "gelenk/ik/effector_task.h"
 #include "gelenk/ik/kernel/tree_layout.h"
 #include "gelenk/ik/serial_arm.h"
 #include "gelenk/ik/serial_chain.h"
@@ -19,12 +20,10 @@
 
 namespace gelenk {
 
-// The effector of one goal, and which residuals it has.
-struct EffectorTask {
-  EffectorFrame effector;
-  bool translation = true;
-  bool rotation = true;
-};
+// True when all frames of `task` lie between the root and one of them, so that
+// its rows fill one path. What couples branches is not for a sparse tree: to it
+// such a task has no rows.
+bool IsOnOnePath(const Skeleton& skeleton, const EffectorTask& task);
 
 class SparseTree {
  public:
@@ -57,6 +56,7 @@ class SparseTree {
   std::vector<kernel::PathColumn> path_columns_;
   std::vector<kernel::PathFollower> followers_;
   std::vector<kernel::Task> tasks_;
+  std::vector<kernel::TaskFrame> frames_;
   std::vector<int> joints_of_nodes_;
   std::vector<int> joints_of_columns_;
   std::optional<SerialChain> chain_;
@@ -65,6 +65,7 @@ class SparseTree {
   int h_size_ = 0;
   int j_size_ = 0;
   int position_count_ = 0;
+  int shaped_count_ = 0;
 };
 
 }  // namespace gelenk

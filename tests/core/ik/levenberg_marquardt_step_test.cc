@@ -8,18 +8,28 @@
 #include <memory>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "gelenk/ik/goal_linearizer.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/kinematics/jacobian.h"
 #include "gelenk/math/rotation.h"
 #include "tests/testing/ik_targets.h"
+#include "tests/testing/random_goals.h"
 #include "tests/testing/random_pose.h"
 #include "tests/testing/random_skeleton.h"
 
 namespace gelenk {
 namespace {
 
+using ::gelenk::testing::kAimGoal;
+using ::gelenk::testing::kHalfSpaceGoal;
+using ::gelenk::testing::kPoleGoal;
+using ::gelenk::testing::kPoseGoal;
+using ::gelenk::testing::kPositionGoal;
+using ::gelenk::testing::kRotationGoal;
 using ::gelenk::testing::PoseGoalsAt;
 using ::gelenk::testing::Random;
+using ::gelenk::testing::RandomGoal;
 using ::gelenk::testing::RandomPose;
 using ::gelenk::testing::RandomSkeletonBuilder;
 using ::gelenk::testing::SkeletonRecipe;
@@ -190,6 +200,68 @@ TEST(FirstStepTest, SolvesTheNormalEquationsOnLongChains) {
   recipe.joint_count = 60;
   recipe.offset_m = 0.05;
   ExpectFirstStepsAgree(recipe, 4);
+}
+
+// The same of goals of every shape, mixed, with J from GoalLinearizer, which
+// has its own test.
+NormalEquations Linearized(const IkProblem& problem,
+                           const Eigen::VectorXd& positions) {
+  const int columns = problem.skeleton().velocity_count();
+  NormalEquations equations = {Eigen::MatrixXd::Zero(columns, columns),
+                               Eigen::VectorXd::Zero(columns)};
+  GoalLinearizer linearizer;
+  linearizer.MoveTo(problem, positions);
+  for (size_t g = 0; g < problem.goals().size(); ++g) {
+    const kernel::TaskTarget& target = problem.targets()[g];
+    const int count = GoalLinearizer::RowCount(target);
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
+        jacobian(count, columns);
+    kernel::GoalRows rows = {};
+    linearizer.Evaluate(static_cast<int>(g), target, rows);
+    linearizer.ComputeJacobian(static_cast<int>(g), target, rows, positions,
+                               jacobian);
+    for (int r = 0; r < count; ++r) {
+      const double scale =
+          target.row_scale[r < target.translation_rows ? r : 3];
+      const Eigen::VectorXd row = scale * jacobian.row(r);
+      equations.matrix += row * row.transpose();
+      equations.gradient += scale * rows.residual[r] * row;
+    }
+  }
+  return equations;
+}
+
+TEST(FirstStepTest, SolvesTheNormalEquationsOfEveryShape) {
+  Random random(5);
+  SkeletonRecipe recipe;
+  recipe.limited = 0;
+  int compared = 0;
+  for (int tree = 0; tree < 150; ++tree) {
+    recipe.branching = Uniform(random, 0, 0.8);
+    const auto skeleton = WithStiffness(
+        random, *RandomSkeletonBuilder(random, recipe).Build().value());
+    if (skeleton->velocity_count() == 0) continue;
+    const Eigen::VectorXd truth = RandomPose(random, *skeleton);
+    std::vector<Goal> goals;
+    for (int kind : {kPoseGoal, kRotationGoal, kAimGoal, kPoleGoal,
+                     kHalfSpaceGoal, kPositionGoal, kAimGoal}) {
+      const auto goal = RandomGoal(random, *skeleton, kind, truth);
+      if (!goal) continue;
+      goals.push_back(
+          {absl::StrCat("g", goals.size()), Uniform(random, 0.5, 2), *goal});
+    }
+    const Eigen::VectorXd start = StartNear(random, *skeleton, truth, 0.03);
+    const IkProblem problem = IkProblem::Create(skeleton, goals).value();
+    const NormalEquations equations = Linearized(problem, start);
+    for (InstructionSet level : SupportedInstructionSets()) {
+      const Eigen::VectorXd step = FirstStep(skeleton, goals, start, level);
+      if (step.isZero(0)) continue;  // There already, or uphill.
+      if (step.cwiseAbs().maxCoeff() > 1) continue;  // Cut.
+      ++compared;
+      ExpectSolvesNormalEquations(equations, StiffnessOf(*skeleton), step);
+    }
+  }
+  EXPECT_GT(compared, 150);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -32,6 +34,15 @@ inline void Retarget(AimGoal& goal, const Eigen::Vector3d& target) {
 
 void CheckAndNormalize(AimGoal& goal, Violations& violations);
 void CheckOn(const Skeleton& skeleton, AimGoal& goal, Violations& violations);
+
+// What it looks at; `goal` has passed CheckOn.
+EffectorTask TaskOf(const Skeleton& skeleton, const AimGoal& goal);
+// The part that moves, and the part that does not.
+void StoreTarget(const AimGoal& goal, kernel::TaskTarget& target);
+void StoreRows(const AimGoal& goal, double weight, kernel::TaskTarget& target);
+
+void LinearizeAim(const kernel::TaskTarget& target,
+                  const kernel::GoalFrame* frames, kernel::GoalRows& rows);
 
 }  // namespace gelenk
 

@@ -8,7 +8,9 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
 #include "gelenk/ik/goals/axis_mask.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -31,6 +33,13 @@ inline void Retarget(CenterOfMassGoal& goal, const Eigen::Vector3d& target) {
 
 void CheckAndNormalize(CenterOfMassGoal& goal, Violations& violations);
 inline void CheckOn(const Skeleton&, CenterOfMassGoal&, Violations&) {}
+
+// It looks at no frame but at all links.
+EffectorTask TaskOf(const Skeleton& skeleton, const CenterOfMassGoal& goal);
+// The part that moves, and the part that does not.
+void StoreTarget(const CenterOfMassGoal& goal, kernel::TaskTarget& target);
+void StoreRows(const CenterOfMassGoal& goal, double weight,
+               kernel::TaskTarget& target);
 
 }  // namespace gelenk
 

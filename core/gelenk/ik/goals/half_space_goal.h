@@ -7,6 +7,8 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -47,6 +49,17 @@ void CheckAndNormalize(Plane& plane, Violations& violations);
 void CheckAndNormalize(HalfSpaceGoal& goal, Violations& violations);
 void CheckOn(const Skeleton& skeleton, HalfSpaceGoal& goal,
              Violations& violations);
+
+// What it looks at; `goal` has passed CheckOn.
+EffectorTask TaskOf(const Skeleton& skeleton, const HalfSpaceGoal& goal);
+// The part that moves, and the part that does not.
+void StoreTarget(const HalfSpaceGoal& goal, kernel::TaskTarget& target);
+void StoreRows(const HalfSpaceGoal& goal, double weight,
+               kernel::TaskTarget& target);
+
+void LinearizeHalfSpace(const kernel::TaskTarget& target,
+                        const kernel::GoalFrame* frames,
+                        kernel::GoalRows& rows);
 
 }  // namespace gelenk
 

@@ -8,6 +8,8 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -31,6 +33,13 @@ inline void Retarget(PlantGoal&, std::monostate) {}
 
 void CheckAndNormalize(PlantGoal& goal, Violations& violations);
 void CheckOn(const Skeleton& skeleton, PlantGoal& goal, Violations& violations);
+
+// What it looks at; `goal` has passed CheckOn.
+EffectorTask TaskOf(const Skeleton& skeleton, const PlantGoal& goal);
+// The part that moves, and the part that does not.
+void StoreTarget(const PlantGoal& goal, kernel::TaskTarget& target);
+void StoreRows(const PlantGoal& goal, double weight,
+               kernel::TaskTarget& target);
 
 }  // namespace gelenk
 

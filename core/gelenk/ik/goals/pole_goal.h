@@ -8,6 +8,8 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -34,6 +36,15 @@ inline void Retarget(PoleGoal& goal, const Eigen::Vector3d& target) {
 
 void CheckAndNormalize(PoleGoal& goal, Violations& violations);
 void CheckOn(const Skeleton& skeleton, PoleGoal& goal, Violations& violations);
+
+// What it looks at; `goal` has passed CheckOn.
+EffectorTask TaskOf(const Skeleton& skeleton, const PoleGoal& goal);
+// The part that moves, and the part that does not.
+void StoreTarget(const PoleGoal& goal, kernel::TaskTarget& target);
+void StoreRows(const PoleGoal& goal, double weight, kernel::TaskTarget& target);
+
+void LinearizePole(const kernel::TaskTarget& target,
+                   const kernel::GoalFrame* frames, kernel::GoalRows& rows);
 
 }  // namespace gelenk
 

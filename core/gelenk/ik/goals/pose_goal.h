@@ -6,7 +6,9 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
 #include "gelenk/ik/goals/axis_mask.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/math/rigid_transform.h"
 #include "gelenk/skeleton/skeleton.h"
 
@@ -37,6 +39,12 @@ inline void Retarget(PoseGoal& goal, const RigidTransform& target) {
 
 void CheckAndNormalize(PoseGoal& goal, Violations& violations);
 void CheckOn(const Skeleton& skeleton, PoseGoal& goal, Violations& violations);
+
+// What it looks at; `goal` has passed CheckOn.
+EffectorTask TaskOf(const Skeleton& skeleton, const PoseGoal& goal);
+// The part that moves, and the part that does not.
+void StoreTarget(const PoseGoal& goal, kernel::TaskTarget& target);
+void StoreRows(const PoseGoal& goal, double weight, kernel::TaskTarget& target);
 
 }  // namespace gelenk
 

@@ -7,7 +7,9 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
 #include "gelenk/ik/goals/axis_mask.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -33,6 +35,13 @@ inline void Retarget(PositionGoal& goal, const Eigen::Vector3d& target) {
 void CheckAndNormalize(PositionGoal& goal, Violations& violations);
 void CheckOn(const Skeleton& skeleton, PositionGoal& goal,
              Violations& violations);
+
+// What it looks at; `goal` has passed CheckOn.
+EffectorTask TaskOf(const Skeleton& skeleton, const PositionGoal& goal);
+// The part that moves, and the part that does not.
+void StoreTarget(const PositionGoal& goal, kernel::TaskTarget& target);
+void StoreRows(const PositionGoal& goal, double weight,
+               kernel::TaskTarget& target);
 
 }  // namespace gelenk
 

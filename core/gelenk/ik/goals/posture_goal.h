@@ -7,6 +7,8 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -33,6 +35,11 @@ inline void Retarget(PostureGoal& goal, const Eigen::VectorXd& target) {
 void CheckAndNormalize(PostureGoal& goal, Violations& violations);
 void CheckOn(const Skeleton& skeleton, PostureGoal& goal,
              Violations& violations);
+
+// It is no function of a few frames.
+inline EffectorTask TaskOf(const Skeleton&, const PostureGoal&) { return {}; }
+inline void StoreTarget(const PostureGoal&, kernel::TaskTarget&) {}
+inline void StoreRows(const PostureGoal&, double, kernel::TaskTarget&) {}
 
 }  // namespace gelenk
 

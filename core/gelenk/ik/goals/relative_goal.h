@@ -7,6 +7,8 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/math/rigid_transform.h"
 #include "gelenk/skeleton/skeleton.h"
 
@@ -36,6 +38,16 @@ inline void Retarget(RelativeGoal& goal, const RigidTransform& target) {
 void CheckAndNormalize(RelativeGoal& goal, Violations& violations);
 void CheckOn(const Skeleton& skeleton, RelativeGoal& goal,
              Violations& violations);
+
+// What it looks at; `goal` has passed CheckOn.
+EffectorTask TaskOf(const Skeleton& skeleton, const RelativeGoal& goal);
+// The part that moves, and the part that does not.
+void StoreTarget(const RelativeGoal& goal, kernel::TaskTarget& target);
+void StoreRows(const RelativeGoal& goal, double weight,
+               kernel::TaskTarget& target);
+
+void LinearizeRelative(const kernel::TaskTarget& target,
+                       const kernel::GoalFrame* frames, kernel::GoalRows& rows);
 
 }  // namespace gelenk
 

@@ -7,7 +7,9 @@
 
 #include "absl/strings/string_view.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/effector_task.h"
 #include "gelenk/ik/goals/axis_mask.h"
+#include "gelenk/ik/kernel/goal_rows.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -34,6 +36,13 @@ inline void Retarget(RotationGoal& goal, const Eigen::Quaterniond& target) {
 void CheckAndNormalize(RotationGoal& goal, Violations& violations);
 void CheckOn(const Skeleton& skeleton, RotationGoal& goal,
              Violations& violations);
+
+// What it looks at; `goal` has passed CheckOn.
+EffectorTask TaskOf(const Skeleton& skeleton, const RotationGoal& goal);
+// The part that moves, and the part that does not.
+void StoreTarget(const RotationGoal& goal, kernel::TaskTarget& target);
+void StoreRows(const RotationGoal& goal, double weight,
+               kernel::TaskTarget& target);
 
 }  // namespace gelenk
 

@@ -2,9 +2,9 @@
 // instruction set: GELENK_KERNEL_LEVEL names the level, GELENK_KERNEL_LANES is
 // its vector width in doubles.
 //
-// Only plain arrays and functions of this file (and rotation_bounds.h, out of
-// line): an inline function of a library that was emitted here with a higher
-// level could be picked by the linker for everybody.
+// Only plain arrays and functions of this file (and of rotation_bounds.h and
+// goal_rows.h, out of line): an inline function of a library that was emitted
+// here with a higher level could be picked by the linker for everybody.
 #include "gelenk/base/kernel/lanes.h"
 #include "gelenk/ik/kernel/descent.h"
 #include "gelenk/ik/kernel/rotation_bounds.h"
@@ -258,6 +258,10 @@ class Solver {
       work_.position_errors2[t] = 0;
       work_.rotation_errors2[t] = 0;
       if (!target.active) continue;
+      if (task.shape != GoalShape::kPose) {
+        energy += ShapedResidual(t, task);
+        continue;
+      }
       const double* rotation = task.node < 0
                                    ? settings_.base_rotation
                                    : work_.node_rotation + 9 * task.node;
@@ -322,6 +326,37 @@ class Solver {
     return e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
   }
 
+  // The same for goals of other shapes, and their rows.
+  double ShapedResidual(int t, const Task& task) {
+    const TaskTarget& target = targets_[t];
+    GoalFrame* frames = work_.frames + kMaxGoalFrames * task.shaped;
+    for (int f = 0; f < task.frame_count; ++f) {
+      const TaskFrame& frame = tree_.frames[task.frame_begin + f];
+      const bool on_base = frame.node < 0;
+      const double* rotation = on_base ? settings_.base_rotation
+                                       : work_.node_rotation + 9 * frame.node;
+      const double* translation = on_base
+                                      ? settings_.base_translation
+                                      : work_.node_translation + 3 * frame.node;
+      Multiply(rotation, frame.node_from_frame_rotation, frames[f].rotation);
+      Transform(rotation, translation, frame.node_from_frame_translation,
+                frames[f].translation);
+    }
+    GoalRows& rows = work_.goal_rows[task.shaped];
+    LinearizeGoal(target, frames, rows);
+    work_.position_errors2[t] = rows.position_error2;
+    work_.rotation_errors2[t] = rows.rotation_error2;
+    double* e = work_.residuals + 6 * t;
+    double energy =
+        target.row_scale[3] * target.row_scale[3] * rows.rotation_energy;
+    for (int r = 0; r < task.row_end; ++r) {
+      const bool translates = r < target.translation_rows;
+      e[r] = rows.residual[r] * target.row_scale[translates ? r : 3];
+      if (translates) energy += 0.5 * e[r] * e[r];
+    }
+    return energy;
+  }
+
   GELENK_INLINE void AddColumn(const double* axis, const double* origin,
                                bool rotation, const double* tip, double scale,
                                const Task& task, double* j, int stride) {
@@ -365,6 +400,61 @@ class Solver {
       for (int k = 0; k < task.path_size; ++k) {
         row[k] *= target.row_scale[r];
         work_.gradient[path[k].column] += row[k] * e[r];
+      }
+    }
+  }
+
+  // By way of the frames that the goal looks at.
+  void LinearizeShaped(int t, const Task& task, double* j, int stride) {
+    const TaskTarget& target = targets_[t];
+    const PathColumn* path = tree_.path_columns + task.path_begin;
+    for (int i = 0; i < task.row_end * stride; ++i) j[i] = 0;
+    for (int k = 0; k < task.path_size; ++k) {
+      if (path[k].absent) continue;
+      AddShapedColumn(work_.axes + 3 * path[k].column, path[k].node,
+                      path[k].rotation, 1, task, j + k, stride);
+    }
+    const PathFollower* followers = tree_.followers + task.follower_begin;
+    for (int f = 0; f < task.follower_count; ++f) {
+      AddShapedColumn(work_.axes + 3 * followers[f].axis, followers[f].node,
+                      followers[f].rotation, followers[f].multiplier, task,
+                      j + followers[f].place, stride);
+    }
+    const double* e = work_.residuals + 6 * t;
+    for (int r = 0; r < task.row_end; ++r) {
+      const double scale =
+          target.row_scale[r < target.translation_rows ? r : 3];
+      double* row = j + r * stride;
+      for (int k = 0; k < task.path_size; ++k) {
+        row[k] *= scale;
+        work_.gradient[path[k].column] += row[k] * e[r];
+      }
+    }
+  }
+
+  GELENK_INLINE void AddShapedColumn(const double* axis, int node,
+                                     bool rotation, double scale,
+                                     const Task& task, double* j, int stride) {
+    const GoalFrame* frames = work_.frames + kMaxGoalFrames * task.shaped;
+    const GoalRows& rows = work_.goal_rows[task.shaped];
+    const double* origin = work_.node_translation + 3 * node;
+    for (int f = 0; f < task.frame_count; ++f) {
+      if (node > tree_.frames[task.frame_begin + f].node) continue;
+      double motion[6] = {axis[0], axis[1], axis[2], 0, 0, 0};
+      if (rotation) {
+        const double* tip = frames[f].translation;
+        const double d[3] = {tip[0] - origin[0], tip[1] - origin[1],
+                             tip[2] - origin[2]};
+        motion[0] = axis[1] * d[2] - axis[2] * d[1];
+        motion[1] = axis[2] * d[0] - axis[0] * d[2];
+        motion[2] = axis[0] * d[1] - axis[1] * d[0];
+        motion[3] = axis[0], motion[4] = axis[1], motion[5] = axis[2];
+      }
+      for (int r = 0; r < task.row_end; ++r) {
+        const double* row = rows.rows[f][r];
+        double sum = 0;
+        for (int i = 0; i < 6; ++i) sum += row[i] * motion[i];
+        j[r * stride] += scale * sum;
       }
     }
   }
@@ -424,10 +514,17 @@ class Solver {
       const int stride = PaddedRow(task.path_size);
       if (targets_[t].active) {
         const double* rows = j + task.row_begin * stride;
-        if (task.row_end - task.row_begin == 6) {
-          AccumulateRows<6>(task, rows, stride);
-        } else {
-          AccumulateRows<3>(task, rows, stride);
+        switch (task.row_end - task.row_begin) {
+          case 6:
+            AccumulateRows<6>(task, rows, stride);
+            break;
+          case 3:
+            AccumulateRows<3>(task, rows, stride);
+            break;
+          default:
+            for (int r = task.row_begin; r < task.row_end; ++r) {
+              AccumulateRows<1>(task, j + r * stride, stride);
+            }
         }
       }
       j += 6 * stride;

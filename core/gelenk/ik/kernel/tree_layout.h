@@ -19,6 +19,8 @@
 
 #include <cstdint>
 
+#include "gelenk/ik/kernel/goal_rows.h"
+
 namespace gelenk::kernel {
 
 // Rows of J and H are padded to whole vectors of the widest level.
@@ -26,10 +28,6 @@ inline constexpr int kRowAlignment = 8;
 inline constexpr int PaddedRow(int count) {
   return (count + kRowAlignment - 1) / kRowAlignment * kRowAlignment;
 }
-
-// Row-major.
-using Matrix3 = double[9];
-using Vector3 = double[3];
 
 enum class NodeType : uint8_t {
   kRevolute,
@@ -102,19 +100,28 @@ struct Task {
   int path_size;
   int follower_begin;
   int follower_count;
-  int row_begin;  // rows of the residual in use: 0-2 translation,
-  int row_end;    // 3-5 rotation
+  int row_begin;  // rows of the residual in use: of a pose 0-2 translation,
+  int row_end;    // 3-5 rotation; of another shape from 0 on
+  GoalShape shape;
+  int shaped;       // index among the tasks of a shape other than a pose
+  int frame_begin;  // in TreeLayout::frames, of shapes other than a pose
+  int frame_count;
 };
 
-// The moving part of a task.
-struct TaskTarget {
-  Matrix3 world_rotation;
-  Vector3 world_translation;
-  // Square roots of the rows' weights; a masked row has 0.
-  double row_scale[6];
-  // The same without the goal's weight: which rows count for the error.
-  double row_counts[3];
-  bool active;
+// A frame that a goal looks at, on the task's path.
+struct TaskFrame {
+  int node;  // that carries it, -1 for the base
+  Matrix3 node_from_frame_rotation;
+  Vector3 node_from_frame_translation;
+};
+
+// How far one joint should go back to a posture: one number, or a rotation.
+struct PostureTerm {
+  int column;    // the first of its columns
+  int position;  // the first of its numbers in q
+  bool rotation;
+  double weight;
+  double target[4];
 };
 
 struct TreeLayout {
@@ -127,6 +134,7 @@ struct TreeLayout {
   const PathColumn* path_columns;
   const PathFollower* followers;
   const Task* tasks;
+  const TaskFrame* frames;
   int node_count;
   int column_count;
   int axis_count;  // columns, then mimic joints
@@ -134,6 +142,7 @@ struct TreeLayout {
   int h_size;  // numbers in the packed H
   int j_size;  // numbers in the Jacobians of all tasks
   int position_count;
+  int shaped_count;  // tasks of a shape other than a pose
 };
 
 struct Settings {
@@ -150,6 +159,8 @@ struct Settings {
   const double* turn_start;
   const double* turn_cosine;
   const double* turn_sine;
+  const PostureTerm* posture;
+  int posture_count;
   int max_iterations;
   // Give up as soon as a window of iterations does not halve the error: there
   // are other starts to try.
@@ -185,6 +196,8 @@ struct Workspace {
   double* jacobian;          // j_size
   double* residuals;         // 6 * task_count
   double* effectors;         // 3 * task_count
+  GoalFrame* frames;         // kMaxGoalFrames * shaped_count
+  GoalRows* goal_rows;       // shaped_count
   double* h;                 // h_size
   double* gradient;          // column_count
   double* step;              // column_count
