@@ -7,16 +7,24 @@ namespace gelenk {
 
 using kernel::GoalShape;
 
-void GoalLinearizer::MoveTo(const IkProblem& problem,
-                            const ConstVectorView& positions) {
+void GoalLinearizer::SetProblem(const IkProblem& problem) {
   problem_ = &problem;
-  ForwardKinematics(problem.skeleton(), positions,
-                    problem.world_from_skeleton(), frames_);
+  tasks_.clear();
+  for (const Goal& goal : problem.goals()) {
+    tasks_.push_back(std::visit(
+        [&](const auto& kind) { return TaskOf(problem.skeleton(), kind); },
+        goal.kind));
+  }
+}
+
+void GoalLinearizer::MoveTo(const ConstVectorView& positions) {
+  ForwardKinematics(problem_->skeleton(), positions,
+                    problem_->world_from_skeleton(), frames_);
 }
 
 void GoalLinearizer::Evaluate(int goal_index, const kernel::TaskTarget& target,
                               kernel::GoalRows& rows) {
-  const EffectorTask& task = problem_->tasks()[goal_index];
+  const EffectorTask& task = tasks_[goal_index];
   kernel::GoalFrame frames[kernel::kMaxGoalFrames];
   for (int f = 0; f < task.frame_count; ++f) {
     const EffectorFrame& effector = task.frames[f];
@@ -43,7 +51,7 @@ void GoalLinearizer::ComputeJacobian(int goal_index,
     return;
   }
   jacobian.setZero();
-  const EffectorTask& task = problem_->tasks()[goal_index];
+  const EffectorTask& task = tasks_[goal_index];
   JointColumns columns;
   for (int f = 0; f < task.frame_count; ++f) {
     const EffectorFrame& effector = task.frames[f];

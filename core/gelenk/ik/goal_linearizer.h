@@ -9,6 +9,7 @@
 #define GELENK_IK_GOAL_LINEARIZER_H_
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/kernel/goal_rows.h"
@@ -23,8 +24,11 @@ class GoalLinearizer {
   using JacobianView = Eigen::Ref<
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-  // Takes up a pose. Both must stay as they are while they are asked about.
-  void MoveTo(const IkProblem& problem, const ConstVectorView& positions);
+  // Takes up a problem, whose goals must keep their kinds from here on.
+  void SetProblem(const IkProblem& problem);
+
+  // Takes up a pose.
+  void MoveTo(const ConstVectorView& positions);
 
   const WorldTransforms& world_from_joints() const { return frames_; }
 
@@ -44,6 +48,7 @@ class GoalLinearizer {
 
  private:
   const IkProblem* problem_ = nullptr;
+  std::vector<EffectorTask> tasks_;
   WorldTransforms frames_;
   CenterOfMass center_of_mass_;
 };

@@ -1,6 +1,8 @@
 #include "gelenk/ik/ik_problem.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -8,6 +10,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/goals/frame_rows.h"
+#include "gelenk/ik/goals/pose_rows.h"
+#include "gelenk/ik/posture_terms.h"
+#include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/skeleton/joint_check.h"
 #include "gelenk/skeleton/pose.h"
 
@@ -17,8 +23,34 @@ namespace {
 // The kinds that the solvers know so far.
 bool IsSolved(const Skeleton& skeleton, const Goal& goal,
               const EffectorTask& task) {
-  return task.frame_count > 0 && IsOnOnePath(skeleton, task) &&
-         !std::holds_alternative<PlantGoal>(goal.kind);
+  return IsOnOnePath(skeleton, task) &&
+         !std::holds_alternative<CenterOfMassGoal>(goal.kind);
+}
+
+bool HasPosture(absl::Span<const Goal> goals) {
+  return std::any_of(goals.begin(), goals.end(), [](const Goal& goal) {
+    return std::holds_alternative<PostureGoal>(goal.kind);
+  });
+}
+
+RigidTransform WorldFromEffector(const IkProblem& problem,
+                                 absl::string_view effector_id,
+                                 const ConstVectorView& positions) {
+  const Skeleton& skeleton = problem.skeleton();
+  const EffectorFrame effector = *skeleton.FindEffector(effector_id);
+  RigidTransform skeleton_from_effector = effector.joint_from_effector;
+  for (int j = effector.joint; j >= 0; j = skeleton.span(j).parent) {
+    skeleton_from_effector = skeleton.joint(j).parent_from_joint *
+                             JointMotion(skeleton, j, positions) *
+                             skeleton_from_effector;
+  }
+  return problem.world_from_skeleton() * skeleton_from_effector;
+}
+
+// What a plant holds.
+void StorePose(const RigidTransform& world_pose, kernel::TaskTarget& target) {
+  Store(world_pose.translation, target.world_translation);
+  StoreRotation(world_pose.rotation.normalized(), target);
 }
 
 }  // namespace
@@ -61,22 +93,30 @@ absl::StatusOr<IkProblem> IkProblem::Create(
   }
   std::shared_ptr<const SparseTree> tree =
       trees ? trees(tasks) : std::make_shared<SparseTree>(*skeleton, tasks);
-  return IkProblem(std::move(skeleton), std::move(goals), std::move(tasks),
-                   std::move(tree));
+  return IkProblem(std::move(skeleton), std::move(goals), std::move(tree));
 }
 
 IkProblem::IkProblem(std::shared_ptr<const Skeleton> skeleton,
-                     std::vector<Goal> goals, std::vector<EffectorTask> tasks,
+                     std::vector<Goal> goals,
                      std::shared_ptr<const SparseTree> tree)
     : skeleton_(std::move(skeleton)),
       goals_(std::move(goals)),
-      tasks_(std::move(tasks)),
       tree_(std::move(tree)),
       targets_(goals_.size()) {
   for (size_t i = 0; i < goals_.size(); ++i) {
-    RefreshTarget(static_cast<int>(i));
-    RefreshWeights(static_cast<int>(i));
+    const int goal = static_cast<int>(i);
+    RefreshTarget(goal);
+    RefreshWeights(goal);
+    targets_[i].free = std::holds_alternative<PlantGoal>(goals_[i].kind);
+    if (IsFreePlant(goal)) ++free_plant_count_;
   }
+  if (!HasPosture(goals_)) return;
+  tree_columns_.assign(skeleton_->joint_count(), -1);
+  for (int c = tree_->Layout().column_count - 1; c >= 0; --c) {
+    tree_columns_[tree_->joint_of_column(c)] = c;
+  }
+  posture_.reserve(skeleton_->velocity_count());
+  RefreshPosture();
 }
 
 absl::Status IkProblem::CheckTarget(int goal_index, GoalTarget& target) const {
@@ -107,6 +147,7 @@ absl::Status IkProblem::CheckTarget(int goal_index, GoalTarget& target) const {
 void IkProblem::SetTarget(int goal_index, const GoalTarget& target) {
   Retarget(goals_[goal_index].kind, target);
   RefreshTarget(goal_index);
+  if (std::holds_alternative<Eigen::VectorXd>(target)) RefreshPosture();
 }
 
 absl::Status IkProblem::CheckWeight(double weight) {
@@ -118,8 +159,63 @@ absl::Status IkProblem::CheckWeight(double weight) {
 }
 
 void IkProblem::SetWeight(int goal_index, double weight) {
+  const bool was_free = IsFreePlant(goal_index);
   goals_[goal_index].weight = weight;
   RefreshWeights(goal_index);
+  const GoalKind& kind = goals_[goal_index].kind;
+  if (std::holds_alternative<PostureGoal>(kind)) RefreshPosture();
+  if (!std::holds_alternative<PlantGoal>(kind)) return;
+  // Switched off it lets go.
+  if (weight == 0) targets_[goal_index].free = true;
+  free_plant_count_ += int{IsFreePlant(goal_index)} - int{was_free};
+}
+
+bool IkProblem::IsFreePlant(int goal_index) const {
+  return targets_[goal_index].free && targets_[goal_index].active;
+}
+
+void IkProblem::CapturePlants(const ConstVectorView& positions) {
+  if (free_plant_count_ == 0) return;
+  for (size_t i = 0; i < goals_.size(); ++i) {
+    if (!IsFreePlant(static_cast<int>(i))) continue;
+    StorePose(WorldFromEffector(*this, EffectorId(goals_[i].kind), positions),
+              targets_[i]);
+    targets_[i].free = false;
+  }
+  free_plant_count_ = 0;
+}
+
+void IkProblem::CopyTargets(const ConstVectorView& positions,
+                            std::vector<kernel::TaskTarget>& targets) const {
+  targets.assign(targets_.begin(), targets_.end());
+  for (size_t i = 0; i < goals_.size(); ++i) {
+    if (!IsFreePlant(static_cast<int>(i))) continue;
+    StorePose(WorldFromEffector(*this, EffectorId(goals_[i].kind), positions),
+              targets[i]);
+  }
+}
+
+void IkProblem::KeepPlants(const IkProblem& before) {
+  for (size_t i = 0; i < goals_.size(); ++i) {
+    if (!IsFreePlant(static_cast<int>(i))) continue;
+    for (size_t k = 0; k < before.goals_.size(); ++k) {
+      const kernel::TaskTarget& held = before.targets_[k];
+      if (before.goals_[k].id != goals_[i].id || !held.active || held.free ||
+          EffectorId(before.goals_[k].kind) != EffectorId(goals_[i].kind) ||
+          !std::holds_alternative<PlantGoal>(before.goals_[k].kind)) {
+        continue;
+      }
+      std::copy_n(held.world_rotation, 9, targets_[i].world_rotation);
+      std::copy_n(held.world_translation, 3, targets_[i].world_translation);
+      targets_[i].free = false;
+      --free_plant_count_;
+    }
+  }
+}
+
+void IkProblem::RefreshPosture() {
+  posture_on_tree_ =
+      JoinPostures(*skeleton_, goals_, std::nullopt, tree_columns_, posture_);
 }
 
 void IkProblem::RefreshTarget(int goal_index) {
@@ -146,10 +242,10 @@ const SerialArm* IkProblem::arm() const {
 }
 
 size_t IkProblem::ByteSize() const {
-  size_t bytes = sizeof(*this) +
-                 targets_.capacity() * sizeof(kernel::TaskTarget) +
-                 tasks_.capacity() * sizeof(EffectorTask) +
-                 goals_.capacity() * sizeof(Goal);
+  size_t bytes =
+      sizeof(*this) + targets_.capacity() * sizeof(kernel::TaskTarget) +
+      posture_.capacity() * sizeof(kernel::PostureTerm) +
+      tree_columns_.capacity() * sizeof(int) + goals_.capacity() * sizeof(Goal);
   for (const Goal& goal : goals_) {
     bytes += goal.id.capacity() + EffectorId(goal.kind).size();
     if (const auto* posture = std::get_if<PostureGoal>(&goal.kind)) {

@@ -14,6 +14,7 @@
 #include "gelenk/ik/goal.h"
 #include "gelenk/ik/sparse_tree.h"
 #include "gelenk/math/rigid_transform.h"
+#include "gelenk/skeleton/pose.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -63,30 +64,58 @@ class IkProblem {
     world_from_skeleton_ = world_from_skeleton;
   }
 
-  // For solvers; by goal.
-  absl::Span<const EffectorTask> tasks() const { return tasks_; }
+  // Plants that were switched on and have no pose to hold yet get their
+  // effectors' at `positions`. Whoever keeps a problem from solve to solve
+  // calls it before each; else plants hold where each solve starts. Cheap when
+  // there is none; allocates nothing.
+  void CapturePlants(const ConstVectorView& positions);
+
+  // Plants that were on in `before`, by their ids, hold on to the same pose.
+  // For a problem that takes the place of another one.
+  void KeepPlants(const IkProblem& before);
+
+  // For solvers, by goal.
   const SparseTree& tree() const { return *tree_; }
   absl::Span<const kernel::TaskTarget> targets() const { return targets_; }
   // Not null when the problem is one goal, of a kind and weight that the
   // kernels of arms know, on the tip of an arm.
   const SerialArm* arm() const;
 
+  bool has_free_plants() const { return free_plant_count_ > 0; }
+  // The same with every plant captured at `positions`, into a solver's memory.
+  void CopyTargets(const ConstVectorView& positions,
+                   std::vector<kernel::TaskTarget>& targets) const;
+
+  // The postures, joined: on the tree's columns, and of joints outside the
+  // tree, which nothing else pulls.
+  absl::Span<const kernel::PostureTerm> posture() const {
+    return absl::MakeSpan(posture_).first(posture_on_tree_);
+  }
+  absl::Span<const kernel::PostureTerm> outside_posture() const {
+    return absl::MakeSpan(posture_).subspan(posture_on_tree_);
+  }
+
   // Without skeleton and tree.
   size_t ByteSize() const;
 
  private:
   IkProblem(std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
-            std::vector<EffectorTask> tasks,
             std::shared_ptr<const SparseTree> tree);
-  // Bring targets_ up to goals_.
+  // Bring targets_ and posture_ up to goals_.
   void RefreshTarget(int goal_index);
   void RefreshWeights(int goal_index);
+  void RefreshPosture();
+  bool IsFreePlant(int goal_index) const;
 
   std::shared_ptr<const Skeleton> skeleton_;
   std::vector<Goal> goals_;
-  std::vector<EffectorTask> tasks_;
   std::shared_ptr<const SparseTree> tree_;
   std::vector<kernel::TaskTarget> targets_;
+  int free_plant_count_ = 0;  // on, without a pose to hold
+  std::vector<kernel::PostureTerm> posture_;
+  int posture_on_tree_ = 0;
+  // First column of each joint; empty without postures.
+  std::vector<int> tree_columns_;
   RigidTransform world_from_skeleton_;
 };
 

@@ -22,6 +22,8 @@ kernel::Settings SettingsFor(const IkProblem& problem,
   settings.position_tolerance2 =
       options.position_tolerance_m * options.position_tolerance_m;
   settings.rotation_tolerance2 = chord * chord;
+  settings.posture = problem.posture().data();
+  settings.posture_count = static_cast<int>(problem.posture().size());
   settings.lower = tree.lower;
   settings.upper = tree.upper;
   settings.max_iterations = options.max_iterations;

@@ -7,6 +7,7 @@
 
 #include "gelenk/ik/kernel/rotation_bounds.h"
 #include "gelenk/ik/kernel_exchange.h"
+#include "gelenk/ik/posture_terms.h"
 #include "gelenk/ik/serial_arm.h"
 #include "gelenk/ik/solve_arm.h"
 #include "gelenk/ik/solve_diagnosis.h"
@@ -166,11 +167,12 @@ kernel::Attempt LevenbergMarquardtSolver::Run(const IkProblem& problem,
                                               const kernel::TreeLayout& tree,
                                               const kernel::Settings& settings,
                                               VectorView positions) {
-  const kernel::TaskTarget* targets = problem.targets().data();
   if (chain_ != nullptr) {
-    return run_chain_(chain_->Layout(), targets[0], settings, chain_workspace_,
-                      positions.data());
+    return run_chain_(chain_->Layout(), problem.targets()[0], settings,
+                      chain_workspace_, positions.data());
   }
+  const kernel::TaskTarget* targets =
+      problem.has_free_plants() ? targets_.data() : problem.targets().data();
   return attempt_(tree, targets, settings, workspace_, positions.data());
 }
 
@@ -199,6 +201,8 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
   chain_ = bounded ? nullptr : problem.tree().chain();
   Reserve(problem, tree);
   std::copy(positions.begin(), positions.end(), start_.begin());
+  if (problem.has_free_plants()) problem.CopyTargets(positions, targets_);
+  TakePosture(problem.outside_posture(), positions);
   ClampToLimits(skeleton, positions);
 
   kernel::Settings settings = SettingsFor(problem, tree, options, stop);

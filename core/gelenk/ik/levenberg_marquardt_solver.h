@@ -96,6 +96,8 @@ class LevenbergMarquardtSolver {
   // Of the problem that is solved, where the kernel of chains fits.
   const SerialChain* chain_ = nullptr;
   ColumnBounds bounds_;
+  // With plants captured, where the problem has free ones.
+  std::vector<kernel::TaskTarget> targets_;
   std::vector<double> start_;
   std::vector<double> best_;
   std::vector<double> change_;

@@ -54,7 +54,8 @@ void Diagnose(const IkProblem& problem, const ConstVectorView& positions,
               SolveReport& report) {
   const Skeleton& skeleton = problem.skeleton();
   GoalLinearizer linearizer;
-  linearizer.MoveTo(problem, positions);
+  linearizer.SetProblem(problem);
+  linearizer.MoveTo(positions);
   kernel::GoalRows rows = {};
   std::vector<Eigen::RowVectorXd> translation_rows;
   std::vector<Eigen::RowVectorXd> rotation_rows;

@@ -51,7 +51,8 @@ Linearized LinearizeAt(const IkProblem& problem,
   out.jacobian.resize(GoalLinearizer::RowCount(target),
                       problem.skeleton().velocity_count());
   GoalLinearizer linearizer;
-  linearizer.MoveTo(problem, positions);
+  linearizer.SetProblem(problem);
+  linearizer.MoveTo(positions);
   linearizer.Evaluate(0, target, out.rows);
   linearizer.ComputeJacobian(0, target, out.rows, positions, out.jacobian);
   return out;

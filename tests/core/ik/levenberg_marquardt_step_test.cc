@@ -210,7 +210,8 @@ NormalEquations Linearized(const IkProblem& problem,
   NormalEquations equations = {Eigen::MatrixXd::Zero(columns, columns),
                                Eigen::VectorXd::Zero(columns)};
   GoalLinearizer linearizer;
-  linearizer.MoveTo(problem, positions);
+  linearizer.SetProblem(problem);
+  linearizer.MoveTo(positions);
   for (size_t g = 0; g < problem.goals().size(); ++g) {
     const kernel::TaskTarget& target = problem.targets()[g];
     const int count = GoalLinearizer::RowCount(target);

@@ -86,6 +86,10 @@ class ChainSolver {
     return JoinSegments();
   }
 
+  // Chains with a posture go to the tree's kernel.
+  double PostureEnergy() const { return 0; }
+  double LastMove() const { return 0; }
+
   bool IsWithinTolerance() const {
     // So written that NaN is not within.
     return *work_.position_error2 <= settings_.position_tolerance2;

@@ -29,6 +29,12 @@ constexpr double kStationaryGain = 1e-5;
 // No single step turns a joint by more than this, rad (or m): the linear model
 // is void beyond.
 constexpr double kMaxStep = 1.5;
+// With a posture, which has no tolerance: it has settled after an undamped step
+// of no more than this, rad or m, for the next one is about its square; and
+// where so small steps gain less than kStationaryGain twice in a row, goals and
+// posture have found their balance.
+constexpr double kSettledMove = 5e-3;
+constexpr int kIdleSteps = 2;
 
 // Takes damped steps until the goals are met or there is no more to gain; then
 // leaves the model at the best pose.
@@ -36,31 +42,47 @@ constexpr double kMaxStep = 1.5;
 // The damping is proportional to the energy (Sugihara 2011): strong far away,
 // gone at the target, so that the last steps converge quadratically.
 //
+// A posture only pulls: it is part of the energy that steps must lower, but how
+// far the goals are, and whether they still come nearer, is read off the rest.
+// The goals being met, the attempt ends when the posture has settled, too.
+//
 // Model has
 //   double Evaluate()            half the weighted squared error where it is
+//   double PostureEnergy()       the part of it that is a posture's
 //   bool IsWithinTolerance()     there
 //   void KeepBest(), TakeBest()  remember where it is, go back there
 //   bool Linearize()             what is free to move, and how; whether a
 //                                coordinate at a bound is pushed outwards
 //   void Step(double damping)    from there
+//   double LastMove()            the largest change of that step, rad or m
 template <typename Model>
 GELENK_INLINE Attempt Descend(Model& model, const Settings& settings,
                               double damping_per_energy) {
   Attempt attempt = {AttemptEnd::kIterations, 0, 0, false};
   double factor = 1;
   double best = -1;
+  double best_goals = -1;
   double window_energy = -1;
+  double window_goals = -1;
   int uphill = 0;
+  int idle = 0;
+  const bool has_posture = settings.posture_count > 0;
   for (int iteration = 0;; ++iteration) {
     const double energy = model.Evaluate();
+    const double goal_energy = energy - model.PostureEnergy();
     attempt.iterations = iteration;
     attempt.energy = energy;
-    if (model.IsWithinTolerance()) {
+    const bool small_step =
+        has_posture && iteration > 0 && model.LastMove() <= kSettledMove;
+    const bool settled = !has_posture || (small_step && factor <= 1);
+    if (settled && model.IsWithinTolerance()) {
       attempt.end = AttemptEnd::kConverged;
       return attempt;
     }
+    idle = small_step && energy > (1 - kStationaryGain) * best ? idle + 1 : 0;
     if (best < 0 || energy < best) {
       best = energy;
+      best_goals = goal_energy;
       model.KeepBest();
       factor *= kDampingShrink;
       if (factor < 1) factor = 1;
@@ -74,6 +96,10 @@ GELENK_INLINE Attempt Descend(Model& model, const Settings& settings,
         model.Evaluate();
       }
     }
+    if (idle >= kIdleSteps) {
+      attempt.end = AttemptEnd::kStationary;
+      break;
+    }
     if (iteration >= settings.max_iterations) break;
     if (settings.stop != nullptr && settings.stop(settings.stop_context)) {
       attempt.end = AttemptEnd::kStopped;
@@ -81,23 +107,30 @@ GELENK_INLINE Attempt Descend(Model& model, const Settings& settings,
     }
     if (iteration % kWindow == 0) {
       if (iteration > 0) {
-        if (settings.impatient && best > kImpatientGain * window_energy) {
+        if (settings.impatient && best_goals > kImpatientGain * window_goals) {
           attempt.end = AttemptEnd::kImpatient;
           break;
         }
-        if (best > (1 - kStationaryGain) * window_energy) {
+        if (best > (1 - kStationaryGain) * window_energy &&
+            best_goals > (1 - kStationaryGain) * window_goals) {
           attempt.end = AttemptEnd::kStationary;
           break;
         }
       }
       window_energy = best;
+      window_goals = best_goals;
     }
     model.Linearize();
     // Relative to the energy at the pose that is left, not the best one.
-    model.Step(factor * (damping_per_energy * energy + kDampingFloor));
+    model.Step(factor * (damping_per_energy * goal_energy + kDampingFloor));
   }
   model.TakeBest();
   attempt.energy = model.Evaluate();
+  if (has_posture && attempt.end != AttemptEnd::kIterations &&
+      model.IsWithinTolerance()) {
+    attempt.end = AttemptEnd::kConverged;
+    return attempt;
+  }
   attempt.pushed_at_limit = model.Linearize();
   return attempt;
 }

@@ -57,6 +57,8 @@ struct TaskTarget {
   int8_t translation_rows;
   int8_t rotation_rows;
   bool active;
+  // A plant that has no pose to hold yet.
+  bool free;
 };
 
 // world_from_frame.

@@ -126,8 +126,15 @@ class Solver {
 
   double Evaluate() {
     ForwardPass();
-    return Residuals();
+    posture_energy_ = 0;
+    for (int i = 0; i < settings_.posture_count; ++i) {
+      posture_energy_ += PostureEnergy(settings_.posture[i]);
+    }
+    return Residuals() + posture_energy_;
   }
+
+  double PostureEnergy() const { return posture_energy_; }
+  double LastMove() const { return last_move_; }
 
   bool IsWithinTolerance() const {
     for (int t = 0; t < tree_.task_count; ++t) {
@@ -151,14 +158,20 @@ class Solver {
     for (int t = 0; t < tree_.task_count; ++t) {
       const Task& task = tree_.tasks[t];
       const int stride = PaddedRow(task.path_size);
-      if (targets_[t].active) LinearizeTask(t, task, j, stride);
+      if (targets_[t].active && task.shape == GoalShape::kPose) {
+        LinearizeTask(t, task, j, stride);
+      } else if (targets_[t].active) {
+        LinearizeShaped(t, task, j, stride);
+      }
       j += 6 * stride;
     }
+    for (int i = 0; i < settings_.posture_count; ++i) PullBack(i);
     return BlockColumns();
   }
 
   void Step(double damping) {
     Accumulate();
+    for (int i = 0; i < settings_.posture_count; ++i) Stiffen(i);
     Factorize(damping);
     Solve();
     Move();
@@ -293,6 +306,76 @@ class Solver {
       }
     }
     return energy;
+  }
+
+  // Of one joint. A rotation's is 4 (1 - cos(angle / 2)), whose gradient is the
+  // rotation vector below.
+  GELENK_INLINE double PostureEnergy(const PostureTerm& term) const {
+    if (!term.rotation) {
+      const double way = term.target[0] - q_[term.position];
+      return 0.5 * term.weight * way * way;
+    }
+    double turn[4];
+    BodyTurn(term, turn);
+    const double sine2 =
+        turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
+    return term.weight * 4 * sine2 / (1 + turn[3]);
+  }
+
+  // The rotation from where a joint is to its posture, in its body frame, by
+  // the shorter way: sin(angle / 2) times the axis, cos(angle / 2).
+  GELENK_INLINE void BodyTurn(const PostureTerm& term, double* turn) const {
+    const double* q = q_ + term.position;
+    const double* t = term.target;
+    turn[0] = q[3] * t[0] - t[3] * q[0] - (q[1] * t[2] - q[2] * t[1]);
+    turn[1] = q[3] * t[1] - t[3] * q[1] - (q[2] * t[0] - q[0] * t[2]);
+    turn[2] = q[3] * t[2] - t[3] * q[2] - (q[0] * t[1] - q[1] * t[0]);
+    turn[3] = q[0] * t[0] + q[1] * t[1] + q[2] * t[2] + q[3] * t[3];
+    if (turn[3] >= 0) return;
+    for (int k = 0; k < 4; ++k) turn[k] = -turn[k];
+  }
+
+  // The gradient of a posture, in the basis in which the joint moves.
+  void PullBack(int i) {
+    const PostureTerm& term = settings_.posture[i];
+    double* g = work_.gradient + term.column;
+    if (!term.rotation) {
+      g[0] += term.weight * (term.target[0] - q_[term.position]);
+      return;
+    }
+    double turn[4];
+    BodyTurn(term, turn);
+    const int node = tree_.columns[term.column].node;
+    const double* basis = work_.body_bases + 9 * node;
+    for (int k = 0; k < 3; ++k) {
+      const double along = work_.touched[node] == 0
+                               ? turn[k]
+                               : basis[k] * turn[0] + basis[3 + k] * turn[1] +
+                                     basis[6 + k] * turn[2];
+      g[k] += 2 * term.weight * along;
+    }
+  }
+
+  // Its part of H: diagonal but where a rotation's basis is not orthogonal.
+  void Stiffen(int i) {
+    const PostureTerm& term = settings_.posture[i];
+    const int count = term.rotation ? 3 : 1;
+    for (int k = 0; k < count; ++k) {
+      const Column& column = tree_.columns[term.column + k];
+      double* row = work_.h + column.row;
+      const bool touched = term.rotation && work_.touched[column.node] != 0;
+      if (!touched) {
+        row[column.depth] += term.weight;
+        continue;
+      }
+      const double* basis = work_.body_bases + 9 * column.node;
+      for (int m = 0; m <= k; ++m) {
+        const double product = basis[k] * basis[m] +
+                               basis[3 + k] * basis[3 + m] +
+                               basis[6 + k] * basis[6 + m];
+        row[column.depth - k + m] += term.weight * product;
+      }
+    }
   }
 
   static GELENK_INLINE double RotationResidual(const double* to,
@@ -611,6 +694,7 @@ class Solver {
       largest = Max(largest, Abs(work_.step[c]));
     }
     const double scale = largest > kMaxStep ? kMaxStep / largest : 1;
+    last_move_ = scale * largest;
     for (int c = 0; c < tree_.column_count; ++c) {
       const Column& column = tree_.columns[c];
       if (column.position < 0) continue;
@@ -695,6 +779,8 @@ class Solver {
   const Settings& settings_;
   const Workspace& work_;
   double* const q_;
+  double posture_energy_ = 0;
+  double last_move_ = 0;
 };
 
 }  // namespace
