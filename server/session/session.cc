@@ -171,6 +171,7 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
     if (!problem.ok()) return problem.status();
     patched = *std::move(problem);
     patched->SetWorldFromSkeleton(problem_.world_from_skeleton());
+    patched->KeepPlants(problem_);
   }
   if (absl::Status status = CheckUpdates(patched ? *patched : problem_, frame);
       !status.ok()) {
@@ -222,6 +223,7 @@ absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
   if (!whole) options.detail = ReportDetail::kBrief;
   const absl::Time begin = Now();
   const StepBounds* bounds = SpeedBoundsLocked(frame);
+  problem_.CapturePlants(positions_);
   solver.Solve(problem_, options, cold_ ? SolveStart::kCold : SolveStart::kWarm,
                positions_, frame.report, bounds);
   frame.end_time = Now();
@@ -298,6 +300,7 @@ absl::Status Session::Update(
       trees_->CreateProblem(std::move(state.goals), state.options);
   if (!problem.ok()) return problem.status();
   problem->SetWorldFromSkeleton(state.world_from_skeleton);
+  problem->KeepPlants(problem_);
 
   problem_ = *std::move(problem);
   options_ = state.options;

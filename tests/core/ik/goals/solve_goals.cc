@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/ik/ik_solver.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/skeleton/skeleton_builder.h"
 #include "tests/testing/ik_targets.h"
@@ -16,7 +16,7 @@ Solved SolveGoals(const std::shared_ptr<const Skeleton>& skeleton,
   for (size_t i = 0; i < goals.size(); ++i) goals[i].id = absl::StrCat("g", i);
   Solved solved;
   solved.positions = start;
-  LevenbergMarquardtSolver().Solve(
+  IkSolver().Solve(
       IkProblem::Create(skeleton, std::move(goals)).value(), options,
       SolveStart::kWarm, solved.positions, solved.report);
   return solved;
