@@ -236,7 +236,7 @@ const SerialArm* IkProblem::arm() const {
   if (arm == nullptr || targets_.size() != 1) return nullptr;
   const kernel::TaskTarget& target = targets_[0];
   const double* scale = target.row_scale;
-  const bool is_known = target.active && IsSolved(goals_[0]) &&
+  const bool is_known = target.active && !has_free_plants() &&
                         scale[3] == scale[4] && scale[3] == scale[5];
   return is_known ? arm : nullptr;
 }

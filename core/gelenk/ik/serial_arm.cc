@@ -51,6 +51,7 @@ bool IsScalar(const kernel::Node& node) {
 bool IsArm(const kernel::TreeLayout& tree) {
   if (tree.task_count != 1 || tree.node_count < 1 ||
       tree.node_count > kMaxArmJoints || tree.column_count != tree.node_count ||
+      tree.tasks[0].shape != kernel::GoalShape::kPose ||
       tree.tasks[0].node != tree.node_count - 1) {
     return false;
   }
