@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "gelenk/math/rotation.h"
 
@@ -400,6 +401,11 @@ SparseTree::SparseTree(const Skeleton& skeleton,
   SparseTreeBuilder(skeleton, tasks, *this).Build();
   chain_ = SerialChain::Of(Layout());
   arm_ = SerialArm::Create(Layout());
+  if (chain_) {
+    absl::StatusOr<BoneChain> bones =
+        BoneChain::Of(skeleton, Layout(), joints_of_nodes_);
+    if (bones.ok()) bones_ = *std::move(bones);
+  }
 }
 
 kernel::TreeLayout SparseTree::Layout() const {
@@ -428,7 +434,8 @@ size_t SparseTree::ByteSize() const {
          bytes(columns_) + bytes(lower_) + bytes(upper_) +
          bytes(path_columns_) + bytes(followers_) + bytes(tasks_) +
          bytes(frames_) + bytes(joints_of_nodes_) + bytes(joints_of_columns_) +
-         (chain_ ? chain_->ByteSize() : 0) + (arm_ ? sizeof(*arm_) : 0);
+         (chain_ ? chain_->ByteSize() : 0) + (arm_ ? sizeof(*arm_) : 0) +
+         (bones_ ? bones_->ByteSize() : 0);
 }
 
 }  // namespace gelenk

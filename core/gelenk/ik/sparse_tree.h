@@ -13,6 +13,7 @@
 
 #include "absl/types/span.h"
 #include "gelenk/ik/effector_task.h"
+#include "gelenk/ik/bone_chain.h"
 #include "gelenk/ik/kernel/tree_layout.h"
 #include "gelenk/ik/serial_arm.h"
 #include "gelenk/ik/serial_chain.h"
@@ -38,10 +39,13 @@ class SparseTree {
   // Index in the skeleton of the joint whose degree of freedom a column is.
   int joint_of_column(int column) const { return joints_of_columns_[column]; }
 
-  // For the solver of chains; null when these tasks make none.
+  absl::Span<const int> joints_of_nodes() const { return joints_of_nodes_; }
+
+  // For solvers of chains; null when these tasks make none of that kind.
   const SerialChain* chain() const { return chain_ ? &*chain_ : nullptr; }
   // Null when these tasks are not that of one arm.
   const SerialArm* arm() const { return arm_.get(); }
+  const BoneChain* bones() const { return bones_ ? &*bones_ : nullptr; }
 
   size_t ByteSize() const;
 
@@ -61,6 +65,7 @@ class SparseTree {
   std::vector<int> joints_of_columns_;
   std::optional<SerialChain> chain_;
   std::unique_ptr<const SerialArm> arm_;
+  std::optional<BoneChain> bones_;
   int axis_count_ = 0;
   int h_size_ = 0;
   int j_size_ = 0;

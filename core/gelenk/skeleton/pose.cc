@@ -27,6 +27,16 @@ void ForEachMoving(const Skeleton& skeleton, Visit visit) {
   }
 }
 
+// Calls `visit(joint, quaternion offset)` for each joint that owns one; knows
+// without a look at the joints themselves.
+template <typename Visit>
+void ForEachQuaternion(const Skeleton& skeleton, Visit visit) {
+  for (int i = 0; i < skeleton.joint_count(); ++i) {
+    const int at = skeleton.span(i).quaternion_offset;
+    if (at >= 0) visit(i, at);
+  }
+}
+
 void CheckQuaternion(int at, VectorView positions, Violations& violations) {
   if (NormalizeNearUnit(positions.data() + at)) return;
   violations.Add(absl::StrCat("positions[", at, "]"),
@@ -39,10 +49,7 @@ void CheckQuaternion(int at, VectorView positions, Violations& violations) {
 
 Eigen::VectorXd NeutralPositions(const Skeleton& skeleton) {
   Eigen::VectorXd positions = Eigen::VectorXd::Zero(skeleton.position_count());
-  ForEachMoving(skeleton, [&](int i, int q, int) {
-    const int start = QuaternionStart(skeleton.joint(i).type);
-    if (start >= 0) positions[q + start + 3] = 1;
-  });
+  ForEachQuaternion(skeleton, [&](int, int at) { positions[at + 3] = 1; });
   return positions;
 }
 
@@ -108,24 +115,21 @@ void Difference(const Skeleton& skeleton, const ConstVectorView& from,
 double ClampToLimits(const Skeleton& skeleton, VectorView positions) {
   const PositionBounds& bounds = skeleton.position_bounds();
   double largest = 0;
-  for (int i = 0; i < positions.size(); ++i) {
-    const double inside =
-        std::clamp(positions[i], bounds.lower[i], bounds.upper[i]);
-    largest = std::max(largest, std::abs(positions[i] - inside));
-    positions[i] = inside;
+  if (positions.size() > 0) {
+    largest = std::max({largest, (bounds.lower - positions).maxCoeff(),
+                        (positions - bounds.upper).maxCoeff()});
+    positions = positions.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
   }
-  ForEachMoving(skeleton, [&](int i, int q, int) {
+  ForEachQuaternion(skeleton, [&](int i, int at) {
     const Joint& joint = skeleton.joint(i);
-    const int start = QuaternionStart(joint.type);
-    if (start < 0 || !joint.limits.HasRotationLimits()) return;
-    const Eigen::Quaterniond rotation =
-        QuaternionXyzw(positions.data() + q + start);
+    if (!joint.limits.HasRotationLimits()) return;
+    const Eigen::Quaterniond rotation = QuaternionXyzw(positions.data() + at);
     const double excess =
         RotationLimitExcess(joint.limits, joint.axis, rotation);
     if (excess <= 0) return;
     largest = std::max(largest, excess);
     StoreXyzw(ClampRotation(joint.limits, joint.axis, rotation),
-              positions.data() + q + start);
+              positions.data() + at);
   });
   return largest;
 }
@@ -167,10 +171,7 @@ double ScalarPosition(const Skeleton& skeleton,
 
 void AlignHemispheres(const Skeleton& skeleton,
                       const ConstVectorView& reference, VectorView positions) {
-  ForEachMoving(skeleton, [&](int i, int q, int) {
-    const int start = QuaternionStart(skeleton.joint(i).type);
-    if (start < 0) return;
-    const int at = q + start;
+  ForEachQuaternion(skeleton, [&](int, int at) {
     if (reference.segment<4>(at).dot(positions.segment<4>(at)) < 0) {
       positions.segment<4>(at) *= -1;
     }

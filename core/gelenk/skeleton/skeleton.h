@@ -19,10 +19,11 @@ namespace gelenk {
 
 // Where a joint's numbers live. Never index q by a joint's index.
 struct JointSpan {
-  int parent = -1;           // index of the parent joint, -1 for the root
-  int position_offset = -1;  // first number in q, -1 for none
-  int velocity_offset = -1;  // first number in a velocity, -1 for none
-  int mimicked = -1;         // index of the joint that a mimic joint follows
+  int parent = -1;             // index of the parent joint, -1 for the root
+  int position_offset = -1;    // first number in q, -1 for none
+  int velocity_offset = -1;    // first number in a velocity, -1 for none
+  int quaternion_offset = -1;  // first number of its quaternion in q, if any
+  int mimicked = -1;           // index of the joint that a mimic joint follows
 };
 
 // What a goal can be tied to: a frame that rides on a joint.

@@ -164,6 +164,11 @@ void SkeletonBuilder::PlaceJoints(const std::vector<int>& order,
     if (OwnedCount(joint) > 0) {
       span.position_offset = skeleton.position_count_;
       span.velocity_offset = skeleton.velocity_count_;
+      if (joint.type == JointType::kSpherical) {
+        span.quaternion_offset = span.position_offset;
+      } else if (joint.type == JointType::kFree) {
+        span.quaternion_offset = span.position_offset + 3;
+      }
       skeleton.position_count_ += PositionCount(joint.type);
       skeleton.velocity_count_ += VelocityCount(joint.type);
     }

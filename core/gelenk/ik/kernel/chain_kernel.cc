@@ -169,28 +169,39 @@ class ChainSolver {
     return reinterpret_cast<LaneNumbers*>(work_.records) + step.record;
   }
 
-  // From q to the records.
+  // From q to the records. Lanes without a node get a number that moves
+  // nothing.
   void Load() {
     for (int s = 0; s < chain_.step_count; ++s) {
       const ChainStep& step = chain_.steps[s];
       LaneNumbers* record = RecordOf(step);
-      for (int lane = 0; lane < kChainLanes; ++lane) {
-        const bool idle = step.node[lane] < 0;
-        const double* q = q_ + step.position[lane];
-        if (step.type == NodeType::kSpherical) {
+      const bool spherical = step.type == NodeType::kSpherical;
+      for (int part = 0; part < part_end_; part += kWidth) {
+        const Mask used = Get(step.compliance, 0, part) > 0;
+        if (spherical) {
           for (int k = 0; k < 4; ++k) {
-            record[kQuaternion + k][lane] = idle ? k == 3 : q[k];
+            const Pack q = Vector::Gather(q_ + k, step.position + part);
+            const Pack still = Vector::All(k == 3);
+            Put(record, kQuaternion + k, part, used ? q : still);
           }
           continue;
         }
-        const int column = step.column[lane];
-        record[kAngle][lane] = idle ? 0 : q[0];
-        record[kLower][lane] = idle ? 0 : settings_.lower[column];
-        record[kUpper][lane] = idle ? 0 : settings_.upper[column];
+        const Pack q = Vector::Gather(q_, step.position + part);
+        const Pack still = {};
+        const Pack unbounded = Vector::All(__builtin_inf());
+        const int* columns = step.column + part;
+        const Pack lower = Vector::Gather(settings_.lower, columns);
+        const Pack upper = Vector::Gather(settings_.upper, columns);
+        Put(record, kAngle, part, used ? q : still);
+        Put(record, kLower, part, used ? lower : -unbounded);
+        Put(record, kUpper, part, used ? upper : unbounded);
       }
-      if (step.limits_rotation) TouchLimits(step, record);
-      for (int node : step.node) {
-        if (node >= 0 && !step.limits_rotation) work_.touched[node] = 0;
+      if (step.limits_rotation) {
+        TouchLimits(step, record);
+      } else if (spherical) {
+        for (int node : step.node) {
+          if (node >= 0) work_.touched[node] = 0;
+        }
       }
     }
   }
