@@ -90,11 +90,10 @@ class BoneChainBuilder {
                               tree_.tasks[0].row_begin == 0 &&
                               tree_.tasks[0].row_end == 3;
     if (!one_position) {
-      return absl::InvalidArgumentError("goals: want one position");
+      return absl::InvalidArgumentError("want one position goal");
     }
     if (tree_.node_count == 0) {
-      return absl::InvalidArgumentError(
-          "goals: nothing moves the end effector");
+      return absl::InvalidArgumentError("nothing moves the end effector");
     }
     return absl::OkStatus();
   }
@@ -197,7 +196,8 @@ class BoneChainBuilder {
     const std::vector<double>& lengths = chain_.lengths_;
     const double longest = *std::max_element(lengths.begin(), lengths.end());
     const double sum = std::accumulate(lengths.begin(), lengths.end(), 0.0);
-    chain_.reach_ = {std::max(0.0, 2 * longest - sum), sum};
+    chain_.folded_reach_m_ = 2 * longest - sum;
+    chain_.longest_reach_m_ = sum;
   }
 
   const Skeleton& skeleton_;
@@ -229,16 +229,18 @@ Matrix3d BoneChain::TurnOf(const Bone& bone, const ConstVectorView& positions) {
          (bone.rests[2] * AboutZ(q[bone.positions[2]]));
 }
 
-void BoneChain::ComputePoints(const ConstVectorView& positions,
-                              const RigidTransform& world_from_skeleton,
-                              absl::Span<Vector3d> points, Turns& turns) const {
-  turns.resize(bones_.size());
+void BoneChain::ComputePose(const ConstVectorView& positions,
+                            const RigidTransform& world_from_skeleton,
+                            BonePose& pose) const {
+  pose.points.resize(bones_.size() + 1);
+  pose.turns.resize(bones_.size());
   Matrix3d rotation = world_from_skeleton.rotation.toRotationMatrix();
-  points[0] = world_from_skeleton * skeleton_origin_;
+  pose.points[0] = world_from_skeleton * skeleton_origin_;
   for (size_t k = 0; k < bones_.size(); ++k) {
-    turns[k] = TurnOf(bones_[k], positions);
-    rotation = (rotation * turns[k]).eval();
-    points[k + 1] = points[k] + rotation * (lengths_[k] * bones_[k].direction);
+    pose.turns[k] = TurnOf(bones_[k], positions);
+    rotation = (rotation * pose.turns[k]).eval();
+    pose.points[k + 1] =
+        pose.points[k] + rotation * (lengths_[k] * bones_[k].direction);
   }
 }
 
@@ -260,23 +262,29 @@ Vector3d BoneChain::AnyAcross(const RigidTransform& world_from_skeleton,
   return across.isZero(0) ? normal.unitOrthogonal() : across.normalized();
 }
 
-bool BoneChain::ReachOut(const Vector3d& last,
-                         absl::Span<Vector3d> points) const {
+bool BoneChain::Reaches(const RigidTransform& world_from_skeleton,
+                        const Vector3d& last) const {
+  const double distance =
+      (last - world_from_skeleton * skeleton_origin_).norm();
+  const bool folds_up = folded_reach_m_ >= 0 && distance <= folded_reach_m_;
+  return distance < longest_reach_m_ && !folds_up;
+}
+
+void BoneChain::ReachOut(const Vector3d& last, BonePose& pose) const {
+  std::vector<Vector3d>& points = pose.points;
   const Vector3d way = last - points[0];
   const double distance = way.norm();
-  const bool too_far = distance >= reach_.longest;
-  if (!too_far && distance > reach_.shortest) return false;
   // Right on the first pivot any direction does; in a plane one of its own.
   const Vector3d direction = distance > 0
                                  ? Vector3d(way / distance)
                                  : (points[1] - points[0]).normalized();
+  const bool too_far = distance >= longest_reach_m_;
   const auto longest = std::max_element(lengths_.begin(), lengths_.end());
   for (size_t k = 0; k < lengths_.size(); ++k) {
     // Too near: the longest bone goes beyond, the others all come back.
     const bool onwards = too_far || &*longest == &lengths_[k];
     points[k + 1] = points[k] + (onwards ? 1 : -1) * lengths_[k] * direction;
   }
-  return true;
 }
 
 void BoneChain::TurnHinge(const Bone& bone, double angle,
@@ -313,14 +321,15 @@ void BoneChain::TurnGimbal(const Bone& bone, const Matrix3d& turn,
   }
 }
 
-Vector3d BoneChain::Follow(absl::Span<const Vector3d> points,
+Vector3d BoneChain::Follow(const BonePose& pose,
                            const RigidTransform& world_from_skeleton,
-                           const Turns& turns, VectorView positions) const {
+                           VectorView positions) const {
+  const std::vector<Vector3d>& points = pose.points;
   Matrix3d rotation = world_from_skeleton.rotation.toRotationMatrix();
   Vector3d tip = points[0];
   for (size_t k = 0; k < bones_.size(); ++k) {
     const Bone& bone = bones_[k];
-    const Matrix3d unturned = rotation * turns[k];
+    const Matrix3d unturned = rotation * pose.turns[k];
     rotation = unturned;
     const double length = lengths_[k];
     if (length > 0) {
@@ -342,7 +351,7 @@ Vector3d BoneChain::Follow(absl::Span<const Vector3d> points,
           double* q = positions.data() + bone.positions[0];
           StoreXyzw((QuaternionXyzw(q) * turn).normalized(), q);
         } else {
-          TurnGimbal(bone, bone.rests[0].transpose() * turns[k] * matrix,
+          TurnGimbal(bone, bone.rests[0].transpose() * pose.turns[k] * matrix,
                      positions);
         }
       }

@@ -22,18 +22,18 @@
 
 namespace gelenk {
 
-// How far the end of such bones can be from their start, m.
-struct BoneReach {
-  double shortest;
-  double longest;
+// A pose of such a chain.
+struct BonePose {
+  // The pivots and the tip, one more than bones. Of a chain in a plane all are
+  // in the plane of the first pivot.
+  std::vector<Eigen::Vector3d> points;
+  // What its joints turn each bone by.
+  std::vector<Eigen::Matrix3d> turns;
 };
 
 class BoneChain {
  public:
-  // Working memory of a pose: what its joints turn each bone by.
-  using Turns = std::vector<Eigen::Matrix3d>;
-
-  // INVALID_ARGUMENT naming "goals" or a joint, and why: the tasks are not one
+  // INVALID_ARGUMENT saying why, with the joint's name: the tasks are not one
   // position, or the joint is part of no pivot, mimics another or has limits. A
   // range of a whole turn or more is no limit. `joints_of_nodes` are the
   // skeleton's joints behind the nodes of `tree`.
@@ -43,13 +43,13 @@ class BoneChain {
 
   int bone_count() const { return static_cast<int>(bones_.size()); }
   absl::Span<const double> lengths() const { return lengths_; }
-  const BoneReach& reach() const { return reach_; }
+  // All bones together, m.
+  double total_length() const { return longest_reach_m_; }
 
-  // The pivots and the tip: bone_count() + 1 points. Of a chain in a plane all
-  // are in the plane of the first pivot. `turns` is resized.
-  void ComputePoints(const ConstVectorView& positions,
-                     const RigidTransform& world_from_skeleton,
-                     absl::Span<Eigen::Vector3d> points, Turns& turns) const;
+  // Allocates only when the pose was smaller before.
+  void ComputePose(const ConstVectorView& positions,
+                   const RigidTransform& world_from_skeleton,
+                   BonePose& pose) const;
 
   // Where the last point is to be for the tip to come as near to `world_target`
   // as the plane allows; in space that is the target.
@@ -60,17 +60,20 @@ class BoneChain {
   Eigen::Vector3d AnyAcross(const RigidTransform& world_from_skeleton,
                             const Eigen::Vector3d& way) const;
 
-  // When `last` is out of reach: lays the points out along the line to it, as
-  // near to it as can be, and returns true.
-  bool ReachOut(const Eigen::Vector3d& last,
-                absl::Span<Eigen::Vector3d> points) const;
+  // Whether the last point can be at `last` and about it.
+  bool Reaches(const RigidTransform& world_from_skeleton,
+               const Eigen::Vector3d& last) const;
 
-  // Turns each joint of `positions` by as little as makes its bone point from
-  // point to point; angles stay within half a turn of what they were. `turns`
-  // are those of `positions`. Returns the tip, world.
-  Eigen::Vector3d Follow(absl::Span<const Eigen::Vector3d> points,
+  // Lays the points out along the line to `last`, which is out of reach, as
+  // near to it as can be.
+  void ReachOut(const Eigen::Vector3d& last, BonePose& pose) const;
+
+  // Turns each joint of `positions`, which `pose` was computed from, by as
+  // little as makes its bone point along the points as they are now; angles
+  // stay within half a turn of what they were. Returns the tip, world.
+  Eigen::Vector3d Follow(const BonePose& pose,
                          const RigidTransform& world_from_skeleton,
-                         const Turns& turns, VectorView positions) const;
+                         VectorView positions) const;
 
   size_t ByteSize() const {
     return bones_.capacity() * sizeof(Bone) +
@@ -109,7 +112,11 @@ class BoneChain {
 
   std::vector<Bone> bones_;
   std::vector<double> lengths_;
-  BoneReach reach_;
+  // How far the last point can be from the first; and where it is when the
+  // longest bone points one way and all others back: if that is not negative,
+  // it comes no nearer.
+  double longest_reach_m_ = 0;
+  double folded_reach_m_ = 0;
   Eigen::Vector3d skeleton_origin_;  // of the first pivot
   bool is_planar_ = false;
   Eigen::Vector3d skeleton_normal_;  // of the plane

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <variant>
 
+#include "absl/strings/str_cat.h"
+#include "gelenk/base/violations.h"
 #include "gelenk/ik/solve_diagnosis.h"
 
 namespace gelenk {
@@ -32,104 +34,118 @@ void Pull(const Vector3d& to, double length, const Vector3d& aside,
   from = to + (length / std::sqrt(distance2)) * way;
 }
 
-}  // namespace
-
-absl::Status FabrikSolver::Check(const IkProblem& problem) {
+absl::Status Fits(const IkProblem& problem) {
   if (problem.goals().size() != 1) {
-    return absl::InvalidArgumentError("goals: want one position");
+    return absl::InvalidArgumentError("want one goal");
   }
   const auto* position = std::get_if<PositionGoal>(&problem.goals()[0].kind);
   const bool whole = position != nullptr && position->axes.x &&
                      position->axes.y && position->axes.z;
   if (!whole) {
-    return absl::InvalidArgumentError(
-        "goals[0]: want a position along all axes");
+    return absl::InvalidArgumentError("want a position goal, along all axes");
   }
   return BoneChain::Of(problem.skeleton(), problem.tree().Layout(),
                        problem.tree().joints_of_nodes())
       .status();
 }
 
-void FabrikSolver::Bend(const Vector3d& last, const Vector3d& aside,
+}  // namespace
+
+absl::Status FabrikSolver::Check(const IkProblem& problem) {
+  const absl::Status fits = Fits(problem);
+  if (fits.ok()) return fits;
+  Violations violations;
+  violations.Add("method", absl::StrCat("fabrik: ", fits.message()));
+  return violations.ToStatus();
+}
+
+void FabrikSolver::Bend(const Vector3d& direction, const Vector3d& aside,
                         double length) {
-  // Right on the root there is no line but that of the points.
-  const Vector3d way = last - points_[0];
-  const Vector3d direction =
-      way.norm() > kOnLine * length
-          ? way.normalized()
-          : Vector3d((points_[1] - points_[0]).normalized());
-  for (const Vector3d& point : points_) {
-    if ((point - points_[0]).cross(direction).norm() > kOnLine * length) return;
+  std::vector<Vector3d>& points = pose_.points;
+  for (const Vector3d& point : points) {
+    if ((point - points[0]).cross(direction).norm() > kOnLine * length) return;
   }
-  const double step = std::numbers::pi / static_cast<double>(points_.size());
-  for (size_t k = 1; k + 1 < points_.size(); ++k) {
-    points_[k] +=
+  const double step = std::numbers::pi / static_cast<double>(points.size());
+  for (size_t k = 1; k + 1 < points.size(); ++k) {
+    points[k] +=
         kBow * length * std::sin(step * static_cast<double>(k)) * aside;
   }
 }
 
-int FabrikSolver::Sweep(absl::Span<const double> lengths, const Vector3d& last,
-                        const Vector3d& aside, double tolerance, int most) {
+void FabrikSolver::Sweep(absl::Span<const double> lengths, const Vector3d& last,
+                         const Vector3d& aside) {
+  std::vector<Vector3d>& points = pose_.points;
   const size_t n = lengths.size();
-  const Vector3d root = points_[0];
-  int sweeps = 0;
-  for (; sweeps < most; ++sweeps) {
-    if ((points_[n] - last).norm() <= tolerance) break;
-    points_[n] = last;
-    for (size_t k = n; k > 0; --k) {
-      Pull(points_[k], lengths[k - 1], aside, points_[k - 1]);
-    }
-    points_[0] = root;
-    for (size_t k = 0; k < n; ++k) {
-      Pull(points_[k], lengths[k], aside, points_[k + 1]);
-    }
+  const Vector3d root = points[0];
+  points[n] = last;
+  for (size_t k = n; k > 0; --k) {
+    Pull(points[k], lengths[k - 1], aside, points[k - 1]);
   }
-  return sweeps;
+  points[0] = root;
+  for (size_t k = 0; k < n; ++k) {
+    Pull(points[k], lengths[k], aside, points[k + 1]);
+  }
 }
 
 void FabrikSolver::Solve(const IkProblem& problem, const SolverOptions& options,
-                         VectorView positions, SolveReport& report) {
-  const BoneChain& bones = *problem.tree().bones();
-  const RigidTransform& base = problem.world_from_skeleton();
-  const kernel::TaskTarget& goal = problem.targets()[0];
-  const Vector3d target(goal.world_translation[0], goal.world_translation[1],
-                        goal.world_translation[2]);
-  start_ = positions;
-  ClampToLimits(problem.skeleton(), positions);
+                         VectorView positions, SolveReport& report,
+                         const StopCondition& stop) {
   report.outcome = SolveOutcome::kConverged;
   report.iteration_count = 0;
   report.restart_count = 0;
   report.position_errors_m.assign(1, 0);
   report.rotation_errors_rad.assign(1, 0);
-  if (goal.active) {
-    points_.resize(bones.bone_count() + 1);
-    bones.ComputePoints(positions, base, absl::MakeSpan(points_), turns_);
-    const Vector3d last = bones.LastPointFor(base, target);
-    // What lies across the plane cannot be helped.
-    const double across = (target - last).norm();
-    const double tolerance = options.position_tolerance_m;
-    const bool out_of_plane = across > tolerance;
-    const double left =
-        out_of_plane ? tolerance
-                     : std::sqrt(tolerance * tolerance - across * across);
-    const bool out_of_reach = bones.ReachOut(last, absl::MakeSpan(points_));
-    if (!out_of_reach) {
-      const Vector3d aside = bones.AnyAcross(base, last - points_[0]);
-      Bend(last, aside, bones.reach().longest);
-      report.iteration_count =
-          Sweep(bones.lengths(), last, aside, (1 - kRounding) * left,
-                kSweepsPerIteration * options.max_iterations);
-    }
-    const Vector3d tip = bones.Follow(points_, base, turns_, positions);
-    report.position_errors_m[0] = (tip - target).norm();
-    if (!(report.position_errors_m[0] <= tolerance)) {
-      report.outcome = out_of_plane || out_of_reach
-                           ? SolveOutcome::kUnreachable
-                           : SolveOutcome::kIterationLimit;
-    }
+  start_ = positions;
+  ClampToLimits(problem.skeleton(), positions);
+  if (problem.targets()[0].active) {
+    Reach(problem, options, positions, report, stop);
   }
   AlignHemispheres(problem.skeleton(), start_, positions);
   FinishReport(problem, options, positions, report);
+}
+
+void FabrikSolver::Reach(const IkProblem& problem, const SolverOptions& options,
+                         VectorView positions, SolveReport& report,
+                         const StopCondition& stop) {
+  const BoneChain& bones = *problem.tree().bones();
+  const RigidTransform& base = problem.world_from_skeleton();
+  const double* t = problem.targets()[0].world_translation;
+  const Vector3d target(t[0], t[1], t[2]);
+  const double tolerance = options.position_tolerance_m;
+  bones.ComputePose(positions, base, pose_);
+  const Vector3d last = bones.LastPointFor(base, target);
+  // What lies across the plane cannot be helped.
+  const double across = (target - last).norm();
+  bool unreachable = across > tolerance;
+  const double left = unreachable
+                          ? tolerance
+                          : std::sqrt(tolerance * tolerance - across * across);
+  SolveOutcome missed = SolveOutcome::kIterationLimit;
+  if (!bones.Reaches(base, last)) {
+    unreachable = true;
+    bones.ReachOut(last, pose_);
+  } else {
+    // Right on the root there is no line but that of the points.
+    const double length = bones.total_length();
+    Vector3d way = last - pose_.points[0];
+    if (way.norm() <= kOnLine * length) way = pose_.points[1] - pose_.points[0];
+    const Vector3d aside = bones.AnyAcross(base, way);
+    Bend(way.normalized(), aside, length);
+    const int most = kSweepsPerIteration * options.max_iterations;
+    while ((pose_.points.back() - last).norm() > (1 - kRounding) * left &&
+           report.iteration_count < most) {
+      if (stop()) {
+        missed = SolveOutcome::kTimeLimit;
+        break;
+      }
+      Sweep(bones.lengths(), last, aside);
+      ++report.iteration_count;
+    }
+  }
+  const Vector3d tip = bones.Follow(pose_, base, positions);
+  report.position_errors_m[0] = (tip - target).norm();
+  if (report.position_errors_m[0] <= tolerance) return;
+  report.outcome = unreachable ? SolveOutcome::kUnreachable : missed;
 }
 
 void FabrikSolver::FinishReport(const IkProblem& problem,

@@ -26,6 +26,7 @@
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
+#include "gelenk/ik/stop_condition.h"
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
@@ -36,31 +37,34 @@ inline constexpr int kSweepsPerIteration = 10;
 
 class FabrikSolver {
  public:
-  // INVALID_ARGUMENT saying why when `problem` is none for FABRIK: it has not
-  // exactly one goal, a position along all axes, or see BoneChain. Weights do
-  // not matter, nor do targets.
+  // INVALID_ARGUMENT naming "method" and why when `problem` is none for FABRIK:
+  // it has not exactly one goal, a position along all axes, or see BoneChain.
+  // Weights do not matter, nor do targets.
   static absl::Status Check(const IkProblem& problem);
 
   // Moves `positions` (size position_count, checked) from the start to the
   // solution, or as near as it gets. report.iteration_count is the number of
   // sweeps. `problem` must have passed Check, `options` CheckSolverOptions.
   void Solve(const IkProblem& problem, const SolverOptions& options,
-             VectorView positions, SolveReport& report);
+             VectorView positions, SolveReport& report,
+             const StopCondition& stop = {});
 
  private:
-  // Bows the points towards unit vector `aside`, perpendicular to the line to
-  // `last`, if they lie on that line.
-  void Bend(const Eigen::Vector3d& last, const Eigen::Vector3d& aside,
+  // Bows the points towards unit vector `aside`, perpendicular to `direction`,
+  // if they lie on a line along that.
+  void Bend(const Eigen::Vector3d& direction, const Eigen::Vector3d& aside,
             double length);
-  // Sweeps until the last point is within `tolerance` of `last`, `most` times
-  // at most; returns how often. Bones without a direction take `aside`.
-  int Sweep(absl::Span<const double> lengths, const Eigen::Vector3d& last,
-            const Eigen::Vector3d& aside, double tolerance, int most);
+  // Once there and back. Bones without a direction take `aside`.
+  void Sweep(absl::Span<const double> lengths, const Eigen::Vector3d& last,
+             const Eigen::Vector3d& aside);
+  // Points and joints to the target of a goal that is on.
+  void Reach(const IkProblem& problem, const SolverOptions& options,
+             VectorView positions, SolveReport& report,
+             const StopCondition& stop);
   void FinishReport(const IkProblem& problem, const SolverOptions& options,
                     const ConstVectorView& positions, SolveReport& report);
 
-  std::vector<Eigen::Vector3d> points_;
-  BoneChain::Turns turns_;
+  BonePose pose_;
   Eigen::VectorXd start_;
   Eigen::VectorXd change_;
 };

@@ -41,8 +41,9 @@ absl::Status IkSolver::Check(const IkProblem& problem,
     case SolverMethod::kPseudoInverse:
     case SolverMethod::kMinimalChange:
       return NewtonSolver::Check(problem, method);
-    case SolverMethod::kTwoLink:
     case SolverMethod::kFabrik:
+      return FabrikSolver::Check(problem);
+    case SolverMethod::kTwoLink:
       break;
   }
   Violations violations;
@@ -69,6 +70,8 @@ void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
       return pseudo_inverse_.Solve(problem, options, positions, report, stop);
     case SolverMethod::kMinimalChange:
       return minimal_change_.Solve(problem, options, positions, report, stop);
+    case SolverMethod::kFabrik:
+      return fabrik_.Solve(problem, options, positions, report, stop);
     default:
       return levenberg_marquardt_.Solve(problem, options, start, positions,
                                         report, stop, bounds);

@@ -9,6 +9,7 @@
 
 #include "absl/status/status.h"
 #include "absl/time/time.h"
+#include "gelenk/ik/fabrik_solver.h"
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/instruction_set.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
@@ -53,6 +54,7 @@ class IkSolver {
   NewtonSolver newton_{SolverMethod::kNewton};
   NewtonSolver pseudo_inverse_{SolverMethod::kPseudoInverse};
   NewtonSolver minimal_change_{SolverMethod::kMinimalChange};
+  FabrikSolver fabrik_;
 };
 
 }  // namespace gelenk

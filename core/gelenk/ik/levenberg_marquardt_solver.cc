@@ -176,6 +176,33 @@ kernel::Attempt LevenbergMarquardtSolver::Run(const IkProblem& problem,
   return attempt_(tree, targets, settings, workspace_, positions.data());
 }
 
+bool LevenbergMarquardtSolver::ReachOut(const IkProblem& problem,
+                                        const kernel::TreeLayout& tree,
+                                        kernel::Settings settings,
+                                        VectorView positions,
+                                        kernel::Attempt& attempt) {
+  const BoneChain* bones = problem.tree().bones();
+  if (bones == nullptr || chain_ == nullptr) return false;
+  const kernel::TaskTarget& target = problem.targets()[0];
+  const double* counts = target.row_counts;
+  const bool whole = counts[0] > 0 && counts[1] > 0 && counts[2] > 0;
+  if (!target.active || !whole) return false;
+  const RigidTransform& base = problem.world_from_skeleton();
+  const double* t = target.world_translation;
+  const Eigen::Vector3d last = bones->LastPointFor(base, {t[0], t[1], t[2]});
+  if (bones->Reaches(base, last)) return false;
+  bones->ComputePose(positions, base, bone_pose_);
+  bones->ReachOut(last, bone_pose_);
+  bones->Follow(bone_pose_, base, positions);
+  // Only to see how far that is.
+  settings.max_iterations = 0;
+  attempt = Run(problem, tree, settings, positions);
+  if (attempt.end != kernel::AttemptEnd::kConverged) {
+    attempt.end = kernel::AttemptEnd::kStationary;
+  }
+  return true;
+}
+
 void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
                                      const SolverOptions& options,
                                      SolveStart start, VectorView positions,
@@ -197,8 +224,9 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
   }
   const kernel::TreeLayout tree = problem.tree().Layout();
   const Skeleton& skeleton = problem.skeleton();
-  // The kernel of chains knows no bounds of turns.
-  chain_ = bounded ? nullptr : problem.tree().chain();
+  // The kernel of chains knows no bounds of turns, and no free plants.
+  chain_ = bounded || problem.has_free_plants() ? nullptr
+                                                : problem.tree().chain();
   Reserve(problem, tree);
   std::copy(positions.begin(), positions.end(), start_.begin());
   if (problem.has_free_plants()) problem.CopyTargets(positions, targets_);
@@ -210,10 +238,13 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
   // Starts from elsewhere would be out of bounds.
   const int budget = bounded ? 0 : RestartBudget(options, start);
   settings.impatient = budget > 0;
-  kernel::Attempt attempt = Run(problem, tree, settings, positions);
+  kernel::Attempt attempt;
+  const bool reached_out =
+      ReachOut(problem, tree, settings, positions, attempt);
+  if (!reached_out) attempt = Run(problem, tree, settings, positions);
   report.iteration_count = attempt.iterations;
   report.restart_count = 0;
-  if (attempt.end != kernel::AttemptEnd::kConverged &&
+  if (!reached_out && attempt.end != kernel::AttemptEnd::kConverged &&
       attempt.end != kernel::AttemptEnd::kStopped && budget > 0) {
     attempt = Restart(problem, settings, budget, options.restart_seed, attempt,
                       positions, report);

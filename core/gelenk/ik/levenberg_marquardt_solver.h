@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "absl/functional/function_ref.h"
+#include "gelenk/ik/bone_chain.h"
 #include "gelenk/ik/column_bounds.h"
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/instruction_set.h"
@@ -71,6 +72,11 @@ class LevenbergMarquardtSolver {
   // One attempt, by the kernel that fits the problem.
   kernel::Attempt Run(const IkProblem& problem, const kernel::TreeLayout& tree,
                       const kernel::Settings& settings, VectorView positions);
+  // Where a chain without limits cannot reach its target it reaches out for it,
+  // in closed form: true then. Steps would take long to stretch it.
+  bool ReachOut(const IkProblem& problem, const kernel::TreeLayout& tree,
+                kernel::Settings settings, VectorView positions,
+                kernel::Attempt& attempt);
   // The joints that move a goal that is on.
   void FindMovingJoints(const IkProblem& problem,
                         const kernel::TreeLayout& tree);
@@ -98,6 +104,7 @@ class LevenbergMarquardtSolver {
   ColumnBounds bounds_;
   // With plants captured, where the problem has free ones.
   std::vector<kernel::TaskTarget> targets_;
+  BonePose bone_pose_;
   std::vector<double> start_;
   std::vector<double> best_;
   std::vector<double> change_;

@@ -177,7 +177,8 @@ TEST_P(ChainTest, FirstStepSolvesTheNormalEquations) {
         Solve(problem, start, SolveStart::kWarm, options, GetParam());
     Eigen::VectorXd step(skeleton->velocity_count());
     Difference(*skeleton, start, solved.positions, step);
-    if (step.isZero(0)) continue;  // There already, or uphill.
+    // There already, uphill, or out of reach.
+    if (step.isZero(0) || solved.report.iteration_count == 0) continue;
     ++compared;
     const Eigen::VectorXd left =
         gradient - j.transpose() * weights.asDiagonal() * (j * step);
@@ -252,30 +253,67 @@ TEST_P(ChainTest, ReachesWithHundredLinks) {
   }
 }
 
+// In closed form without limits, by steps with limits that do not matter.
 TEST(ChainReachTest, BeyondItsLengthItStretchesOut) {
-  for (JointType type : {JointType::kRevolute, JointType::kSpherical}) {
-    const auto chain = EqualLinks(40, type);
-    const Eigen::Vector3d target = Eigen::Vector3d(0.6, 0.8, 0) * 1.5;
-    const Solved solved =
-        Solve(chain, PositionGoalFor("tip", target), SolveStart::kCold);
-    EXPECT_EQ(solved.report.outcome, SolveOutcome::kUnreachable);
-    EXPECT_NEAR(solved.report.position_errors_m[0], 0.5, kNearest);
-    EXPECT_LE((EffectorPose(*chain, solved.positions, "tip").translation -
-               target / 1.5)
-                  .norm(),
-              1e-2);
+  const Eigen::Vector3d target = Eigen::Vector3d(0.6, 0.8, 0) * 1.5;
+  for (SolveStart from : {SolveStart::kCold, SolveStart::kWarm}) {
+    for (JointType type : {JointType::kRevolute, JointType::kSpherical}) {
+      const auto chain = EqualLinks(40, type);
+      const Solved solved = Solve(chain, PositionGoalFor("tip", target), from);
+      EXPECT_EQ(solved.report.outcome, SolveOutcome::kUnreachable);
+      EXPECT_EQ(solved.report.restart_count, 0);
+      EXPECT_NEAR(solved.report.position_errors_m[0], 0.5, kRounding);
+      EXPECT_LE((EffectorPose(*chain, solved.positions, "tip").translation -
+                 target / 1.5)
+                    .norm(),
+                kRounding);
+    }
   }
+  const auto limited = EqualLinks(40, JointType::kRevolute, Range(-2, 2));
+  const Solved solved =
+      Solve(limited, PositionGoalFor("tip", target), SolveStart::kCold);
+  EXPECT_EQ(solved.report.outcome, SolveOutcome::kUnreachable);
+  EXPECT_NEAR(solved.report.position_errors_m[0], 0.5, kNearest);
 }
 
 TEST(ChainReachTest, InsideTheHoleOfItsAnnulusItFoldsUp) {
   // The first link is longer by 0.5 m than all others together.
   std::vector<double> lengths = {1.5};
   for (int i = 0; i < 20; ++i) lengths.push_back(0.05);
-  const auto chain = PlanarChain({0, 0, 0}, lengths);
-  const Solved solved =
-      Solve(chain, PositionGoalFor("tip", {0.3, 0, 0}), SolveStart::kCold);
-  EXPECT_NE(solved.report.outcome, SolveOutcome::kConverged);
-  EXPECT_NEAR(solved.report.position_errors_m[0], 0.2, kNearest);
+  const auto chain = PlanarChain({0.1, 0, 0}, lengths);
+  for (const Eigen::Vector3d& target :
+       {Eigen::Vector3d(0.4, 0, 0), Eigen::Vector3d(0.1, 0, 0)}) {
+    const Solved solved =
+        Solve(chain, PositionGoalFor("tip", target), SolveStart::kCold);
+    EXPECT_EQ(solved.report.outcome, SolveOutcome::kUnreachable);
+    EXPECT_NEAR(solved.report.position_errors_m[0], 0.6 - target.x(),
+                kRounding);
+  }
+}
+
+// The answer follows a target that moves out of reach and back.
+TEST(ChainReachTest, IsContinuousAcrossTheBorderOfItsReach) {
+  const auto chain = EqualLinks(20, JointType::kSpherical);
+  IkProblem problem =
+      IkProblem::Create(chain, {PositionGoalFor("tip", {0.9, 0.1, 0})}).value();
+  SolverOptions options;
+  options.position_tolerance_m = 1e-6;
+  LevenbergMarquardtSolver solver;
+  SolveReport report;
+  Eigen::VectorXd positions = NeutralPositions(*chain);
+  positions = Solve(problem, positions, SolveStart::kCold, options).positions;
+  Eigen::VectorXd before = positions;
+  for (int frame = 0; frame <= 100; ++frame) {
+    // From 0.9 m out to 1.1 m, a millimetre below the length at most a frame.
+    const double distance = 1.0 + 0.1 * std::sin(0.02 * frame - 1.0);
+    problem.SetTarget(0, GoalTarget(Eigen::Vector3d(distance, 0.1, 0)));
+    solver.Solve(problem, options, SolveStart::kWarm, positions, report);
+    Eigen::VectorXd change(chain->velocity_count());
+    Difference(*chain, before, positions, change);
+    // At the border a chain bends by the root of what is left.
+    EXPECT_LE(change.cwiseAbs().maxCoeff(), 0.2) << frame;
+    before = positions;
+  }
 }
 
 TEST(ChainReachTest, OutOfItsPlaneItComesAsNearAsThePlane) {

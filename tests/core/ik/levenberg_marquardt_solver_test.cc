@@ -414,7 +414,8 @@ TEST(LevenbergMarquardtTest, BudgetOfIterationsIsKept) {
 
 TEST(LevenbergMarquardtTest, BudgetOfRestartsIsKept) {
   const auto arm = PlanarChain({0, 0, 0}, {1, 1, 1});
-  const Goal far = PositionGoalFor("tip", {9, 0, 0});
+  // Above its plane, where no start leads.
+  const Goal far = PositionGoalFor("tip", {1, 1, 9});
   const Eigen::Vector3d start(1, 1, 1);
   SolverOptions options;
   for (int restarts : {0, 1, 5}) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gelenk/ik/batch_solver.h"
+#include "gelenk/ik/fabrik_solver.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/kinematics/jacobian.h"
 #include "gelenk/kinematics/kinematic_tree.h"
@@ -233,6 +234,33 @@ TEST(SolverAllocationTest, WarmFramesOfAChain) {
         {target_at(StartNear(random, *skeleton, start, 0.2))});
   }
   EXPECT_EQ(AllocationsOfWarmFrames(streams, {}), 0);
+}
+
+TEST(SolverAllocationTest, FabrikOnceItHasSeenTheChain) {
+  Random random(7);
+  SkeletonRecipe recipe;
+  recipe.types = {JointType::kSpherical};
+  recipe.branching = 0;
+  recipe.limited = 0;
+  recipe.joint_count = 30;
+  const auto skeleton = RandomSkeleton(random, recipe);
+  const std::string id = skeleton->end_effectors()[0].id;
+  const Eigen::VectorXd truth = RandomPose(random, *skeleton);
+  const IkProblem problem =
+      IkProblem::Create(
+          skeleton,
+          {PositionGoalFor(id, EffectorPose(*skeleton, truth, id).translation)})
+          .value();
+  ASSERT_TRUE(FabrikSolver::Check(problem).ok());
+  const Eigen::VectorXd start = RandomPose(random, *skeleton);
+  Eigen::VectorXd positions = start;
+  FabrikSolver solver;
+  SolveReport report;
+  solver.Solve(problem, {}, positions, report);
+  positions = start;
+  const int before = allocation_count;
+  solver.Solve(problem, {}, positions, report);
+  EXPECT_EQ(allocation_count - before, 0);
 }
 
 TEST(SolverAllocationTest, ForwardKinematicsAndJacobian) {

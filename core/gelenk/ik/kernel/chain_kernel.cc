@@ -275,75 +275,94 @@ class ChainSolver {
   bool MoveSegments() {
     Pack largest_angle = {};
     for (int part = 0; part < part_end_; part += kWidth) {
-      Pack rotation[9] = {};
-      for (int k = 0; k < 3; ++k) rotation[4 * k] = Vector::All(1);
-      Pack origin[3] = {};
+      Pack rotation[9], origin[3];
+      for (int k = 0; k < 9; ++k) {
+        rotation[k] = Get(chain_.steps[0].rotation, k, part);
+      }
+      for (int k = 0; k < 3; ++k) {
+        origin[k] = Get(chain_.steps[0].translation, k, part);
+      }
       for (int s = 0; s < chain_.step_count; ++s) {
         const ChainStep& step = chain_.steps[s];
         LaneNumbers* record = RecordOf(step);
-        Pack offset[3];
-        for (int k = 0; k < 3; ++k) offset[k] = Get(step.translation, k, part);
-        AddTransformed(rotation, offset, origin);
-        if (!step.offset_is_translation) {
-          Pack rest[9], turned[9];
-          for (int k = 0; k < 9; ++k) rest[k] = Get(step.rotation, k, part);
-          Multiply(rotation, rest, turned);
-          for (int k = 0; k < 9; ++k) rotation[k] = turned[k];
-        }
-        switch (step.type) {
-          case NodeType::kRevolute: {
-            const Pack angle = Get(record, kAngle, part);
-            largest_angle = Vector::Max(largest_angle, Vector::Abs(angle));
-            Pack sine, cosine;
-            if (kAnyAngle) {
-              for (int lane = 0; lane < kWidth; ++lane) {
-                sine[lane] = __builtin_sin(angle[lane]);
-                cosine[lane] = __builtin_cos(angle[lane]);
-              }
-            } else {
-              Vector::SineCosine(angle, &sine, &cosine);
-            }
-            for (int k = 0; k < 3; ++k) {
-              Put(record, kAxis + k, part, rotation[3 * k + 2]);
-              Put(record, kOrigin + k, part, origin[k]);
-              const Pack x = rotation[3 * k], y = rotation[3 * k + 1];
-              rotation[3 * k] = x * cosine + y * sine;
-              rotation[3 * k + 1] = y * cosine - x * sine;
-            }
-            break;
-          }
-          case NodeType::kPrismatic: {
-            const Pack way = Get(record, kAngle, part);
-            for (int k = 0; k < 3; ++k) {
-              Put(record, kAxis + k, part, rotation[3 * k + 2]);
-              origin[k] += way * rotation[3 * k + 2];
-            }
-            break;
-          }
-          default: {
-            Pack q[4], motion[9], turned[9];
-            for (int k = 0; k < 4; ++k)
-              q[k] = Get(record, kQuaternion + k, part);
-            MatrixFromQuaternion(q, motion);
-            Multiply(rotation, motion, turned);
-            for (int k = 0; k < 9; ++k) rotation[k] = turned[k];
-            if (step.limits_rotation) {
-              Pack basis[9];
-              for (int k = 0; k < 9; ++k)
-                basis[k] = Get(record, kBasis + k, part);
-              Multiply(rotation, basis, turned);
-            }
-            for (int k = 0; k < 9; ++k) Put(record, kAxes + k, part, turned[k]);
-            for (int k = 0; k < 3; ++k)
-              Put(record, kCenter + k, part, origin[k]);
-            break;
-          }
+        if (s > 0) ToRest(step, part, rotation, origin);
+        if (step.type == NodeType::kRevolute) {
+          const Pack angle = Get(record, kAngle, part);
+          largest_angle = Vector::Max(largest_angle, Vector::Abs(angle));
+          TurnAboutZ<kAnyAngle>(angle, record, part, rotation, origin);
+        } else if (step.type == NodeType::kPrismatic) {
+          SlideAlongZ(record, part, rotation, origin);
+        } else {
+          TurnByQuaternion(step, record, part, rotation, origin);
         }
       }
       for (int k = 0; k < 9; ++k) Put(segment_rotation_, k, part, rotation[k]);
       for (int k = 0; k < 3; ++k) Put(segment_end_, k, part, origin[k]);
     }
     return Vector::Largest(largest_angle) <= kLargestAngle;
+  }
+
+  // From the frame of the node before to that of this one at rest.
+  static GELENK_INLINE void ToRest(const ChainStep& step, int part,
+                                   Pack* rotation, Pack* origin) {
+    Pack offset[3];
+    for (int k = 0; k < 3; ++k) offset[k] = Get(step.translation, k, part);
+    AddTransformed(rotation, offset, origin);
+    if (step.offset_is_translation) return;
+    Pack rest[9], turned[9];
+    for (int k = 0; k < 9; ++k) rest[k] = Get(step.rotation, k, part);
+    Multiply(rotation, rest, turned);
+    for (int k = 0; k < 9; ++k) rotation[k] = turned[k];
+  }
+
+  template <bool kAnyAngle>
+  static GELENK_INLINE void TurnAboutZ(const Pack& angle, LaneNumbers* record,
+                                       int part, Pack* rotation,
+                                       const Pack* origin) {
+    Pack sine, cosine;
+    if (kAnyAngle) {
+      for (int lane = 0; lane < kWidth; ++lane) {
+        sine[lane] = __builtin_sin(angle[lane]);
+        cosine[lane] = __builtin_cos(angle[lane]);
+      }
+    } else {
+      Vector::SineCosine(angle, &sine, &cosine);
+    }
+    for (int k = 0; k < 3; ++k) {
+      Put(record, kAxis + k, part, rotation[3 * k + 2]);
+      Put(record, kOrigin + k, part, origin[k]);
+      const Pack x = rotation[3 * k], y = rotation[3 * k + 1];
+      rotation[3 * k] = x * cosine + y * sine;
+      rotation[3 * k + 1] = y * cosine - x * sine;
+    }
+  }
+
+  static GELENK_INLINE void SlideAlongZ(LaneNumbers* record, int part,
+                                        const Pack* rotation, Pack* origin) {
+    const Pack way = Get(record, kAngle, part);
+    for (int k = 0; k < 3; ++k) {
+      Put(record, kAxis + k, part, rotation[3 * k + 2]);
+      origin[k] += way * rotation[3 * k + 2];
+    }
+  }
+
+  static GELENK_INLINE void TurnByQuaternion(const ChainStep& step,
+                                             LaneNumbers* record, int part,
+                                             Pack* rotation,
+                                             const Pack* origin) {
+    Pack q[4], motion[9], turned[9];
+    for (int k = 0; k < 4; ++k) q[k] = Get(record, kQuaternion + k, part);
+    MatrixFromQuaternion(q, motion);
+    Multiply(rotation, motion, turned);
+    for (int k = 0; k < 9; ++k) rotation[k] = turned[k];
+    if (step.limits_rotation) {
+      // The axes in which the limits are a box.
+      Pack basis[9];
+      for (int k = 0; k < 9; ++k) basis[k] = Get(record, kBasis + k, part);
+      Multiply(rotation, basis, turned);
+    }
+    for (int k = 0; k < 9; ++k) Put(record, kAxes + k, part, turned[k]);
+    for (int k = 0; k < 3; ++k) Put(record, kCenter + k, part, origin[k]);
   }
 
   // Where each segment starts in the world, and the tip and the error as each
