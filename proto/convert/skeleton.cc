@@ -7,49 +7,14 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "convert/chain.h"
 #include "convert/geometry.h"
+#include "convert/limits.h"
 #include "convert/pose.h"
 #include "gelenk/base/violations.h"
 
 namespace gelenk::convert {
 namespace {
-
-std::optional<JointType> FromProto(v1::JointType type) {
-  switch (type) {
-    case v1::JOINT_TYPE_FIXED:
-      return JointType::kFixed;
-    case v1::JOINT_TYPE_REVOLUTE:
-      return JointType::kRevolute;
-    case v1::JOINT_TYPE_PRISMATIC:
-      return JointType::kPrismatic;
-    case v1::JOINT_TYPE_SPHERICAL:
-      return JointType::kSpherical;
-    case v1::JOINT_TYPE_PLANAR:
-      return JointType::kPlanar;
-    case v1::JOINT_TYPE_FREE:
-      return JointType::kFree;
-    default:
-      return std::nullopt;
-  }
-}
-
-v1::JointType ToProto(JointType type) {
-  switch (type) {
-    case JointType::kFixed:
-      return v1::JOINT_TYPE_FIXED;
-    case JointType::kRevolute:
-      return v1::JOINT_TYPE_REVOLUTE;
-    case JointType::kPrismatic:
-      return v1::JOINT_TYPE_PRISMATIC;
-    case JointType::kSpherical:
-      return v1::JOINT_TYPE_SPHERICAL;
-    case JointType::kPlanar:
-      return v1::JOINT_TYPE_PLANAR;
-    case JointType::kFree:
-      return v1::JOINT_TYPE_FREE;
-  }
-  return v1::JOINT_TYPE_UNSPECIFIED;
-}
 
 std::vector<double> Numbers(
     const google::protobuf::RepeatedField<double>& proto) {
@@ -59,38 +24,6 @@ std::vector<double> Numbers(
 void CopyNumbers(const std::vector<double>& numbers,
                  google::protobuf::RepeatedField<double>* proto) {
   proto->Assign(numbers.begin(), numbers.end());
-}
-
-JointLimits FromProto(const v1::JointLimits& proto) {
-  JointLimits limits;
-  limits.lower = Numbers(proto.lower());
-  limits.upper = Numbers(proto.upper());
-  if (proto.has_swing_cone_rad()) {
-    limits.swing_cone_rad = proto.swing_cone_rad();
-  }
-  if (proto.has_twist_lower_rad()) {
-    limits.twist_lower_rad = proto.twist_lower_rad();
-  }
-  if (proto.has_twist_upper_rad()) {
-    limits.twist_upper_rad = proto.twist_upper_rad();
-  }
-  limits.max_velocity = Numbers(proto.max_velocity());
-  limits.max_acceleration = Numbers(proto.max_acceleration());
-  return limits;
-}
-
-void ToProto(const JointLimits& limits, v1::JointLimits* proto) {
-  CopyNumbers(limits.lower, proto->mutable_lower());
-  CopyNumbers(limits.upper, proto->mutable_upper());
-  if (limits.swing_cone_rad) proto->set_swing_cone_rad(*limits.swing_cone_rad);
-  if (limits.twist_lower_rad) {
-    proto->set_twist_lower_rad(*limits.twist_lower_rad);
-  }
-  if (limits.twist_upper_rad) {
-    proto->set_twist_upper_rad(*limits.twist_upper_rad);
-  }
-  CopyNumbers(limits.max_velocity, proto->mutable_max_velocity());
-  CopyNumbers(limits.max_acceleration, proto->mutable_max_acceleration());
 }
 
 Joint FromProto(const v1::Joint& proto, JointType type) {
@@ -104,7 +37,7 @@ Joint FromProto(const v1::Joint& proto, JointType type) {
   } else if (NeedsAxis(type)) {
     joint.axis.setZero();  // required: refused by the builder
   }
-  joint.limits = FromProto(proto.limits());
+  joint.limits = convert::FromProto(proto.limits());
   if (proto.has_mimic()) {
     joint.mimic =
         Mimic{proto.mimic().joint_id(),
@@ -124,10 +57,10 @@ Joint FromProto(const v1::Joint& proto, JointType type) {
 void ToProto(const Joint& joint, v1::Joint* proto) {
   proto->set_joint_id(joint.id);
   proto->set_parent_joint_id(joint.parent_id);
-  proto->set_type(ToProto(joint.type));
+  proto->set_type(convert::ToProto(joint.type));
   convert::ToProto(joint.parent_from_joint, proto->mutable_parent_from_joint());
   convert::ToProto(joint.axis, proto->mutable_axis());
-  ToProto(joint.limits, proto->mutable_limits());
+  convert::ToProto(joint.limits, proto->mutable_limits());
   if (joint.mimic) {
     proto->mutable_mimic()->set_joint_id(joint.mimic->joint_id);
     proto->mutable_mimic()->set_multiplier(joint.mimic->multiplier);
@@ -141,15 +74,37 @@ void ToProto(const Joint& joint, v1::Joint* proto) {
                    proto->mutable_link_center_of_mass());
 }
 
-}  // namespace
-
-absl::StatusOr<std::shared_ptr<const Skeleton>> FromProto(
-    const v1::Skeleton& proto, const SkeletonBounds& bounds) {
-  Violations violations;
+// Joints and end effectors, be they listed or in shorthand.
+absl::StatusOr<SkeletonBuilder> JointsOf(const v1::Skeleton& proto,
+                                         Violations& violations) {
+  const bool is_listed =
+      proto.joints_size() > 0 || proto.end_effectors_size() > 0;
+  if (proto.shorthand_case() != v1::Skeleton::SHORTHAND_NOT_SET && is_listed) {
+    violations.Add(proto.has_dh_table() ? "dh_table" : "planar_chain",
+                   "want joints or a shorthand, got both");
+    return violations.ToStatus();
+  }
+  if (proto.has_dh_table()) {
+    absl::StatusOr<DhTable> table = convert::FromProto(proto.dh_table());
+    absl::StatusOr<SkeletonBuilder> builder =
+        table.ok() ? BuilderOf(*table) : table.status();
+    violations.AddStatus("dh_table", builder.status());
+    if (!builder.ok()) return violations.ToStatus();
+    return builder;
+  }
+  if (proto.has_planar_chain()) {
+    absl::StatusOr<PlanarChain> chain =
+        convert::FromProto(proto.planar_chain());
+    absl::StatusOr<SkeletonBuilder> builder =
+        chain.ok() ? BuilderOf(*chain) : chain.status();
+    violations.AddStatus("planar_chain", builder.status());
+    if (!builder.ok()) return violations.ToStatus();
+    return builder;
+  }
   SkeletonBuilder builder;
-  builder.SetBounds(bounds);
   for (int i = 0; i < proto.joints_size(); ++i) {
-    const std::optional<JointType> type = FromProto(proto.joints(i).type());
+    const std::optional<JointType> type =
+        convert::FromProto(proto.joints(i).type());
     if (!type) {
       violations.Add(absl::StrCat("joints[", i, "].type"),
                      absl::StrCat("no such joint type: ",
@@ -163,7 +118,22 @@ absl::StatusOr<std::shared_ptr<const Skeleton>> FromProto(
         {effector.end_effector_id(), effector.joint_id(),
          convert::FromProto(effector.joint_from_end_effector())});
   }
-  builder.SetPlanar(proto.dimension() == v1::DIMENSION_PLANAR);
+  return builder;
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const Skeleton>> FromProto(
+    const v1::Skeleton& proto, const SkeletonBounds& bounds) {
+  Violations violations;
+  absl::StatusOr<SkeletonBuilder> builder_or = JointsOf(proto, violations);
+  if (!builder_or.ok()) return builder_or.status();
+  SkeletonBuilder& builder = *builder_or;
+  builder.SetBounds(bounds);
+  if (!proto.has_planar_chain() ||
+      proto.dimension() != v1::DIMENSION_UNSPECIFIED) {
+    builder.SetPlanar(proto.dimension() == v1::DIMENSION_PLANAR);
+  }
   if (proto.has_up()) builder.SetUp(convert::FromProto(proto.up()));
   if (proto.has_rest_pose()) {
     builder.SetRestPositions(

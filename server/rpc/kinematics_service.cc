@@ -13,6 +13,8 @@
 #include "gelenk/base/violations.h"
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/kinematics/forward_kinematics.h"
+#include "server/rpc/chain_methods.h"
+#include "server/rpc/find_skeleton.h"
 #include "server/rpc/import_skeleton_call.h"
 #include "server/rpc/page.h"
 #include "server/rpc/skeleton_message.h"
@@ -23,14 +25,6 @@ namespace gelenk::server {
 namespace {
 
 using Service = v1::KinematicsService::AsyncService;
-
-absl::StatusOr<StoredSkeleton> FindSkeleton(const ServiceState& state,
-                                            absl::string_view field,
-                                            const std::string& name) {
-  absl::Status status = CheckResourceName(field, kSkeletons, name);
-  if (!status.ok()) return status;
-  return state.skeletons.Find(kDefaultTenant, name);
-}
 
 absl::Status CreateSkeleton(ServiceState& state,
                             const v1::CreateSkeletonRequest& request,
@@ -50,7 +44,11 @@ absl::Status CreateSkeleton(ServiceState& state,
 
   StoredSkeleton stored;
   stored.display_name = request.skeleton().display_name();
-  stored.planar = request.skeleton().dimension() == v1::DIMENSION_PLANAR;
+  // A planar chain is planar unless it says otherwise.
+  stored.planar =
+      request.skeleton().dimension() == v1::DIMENSION_PLANAR ||
+      (request.skeleton().dimension() == v1::DIMENSION_UNSPECIFIED &&
+       request.skeleton().has_planar_chain());
   stored.warnings.assign(request.skeleton().warnings().begin(),
                          request.skeleton().warnings().end());
   stored.create_time = absl::Now();
@@ -245,6 +243,7 @@ void ServeKinematics(Service* service, ServiceState* state, IoThread* thread) {
         return GetServerInfo(*state, response);
       },
       state, thread);
+  ServeChains(service, state, thread);
   ImportSkeletonCall::Start(service, state, thread);
 }
 
