@@ -29,6 +29,8 @@ struct Command {
 
 // Each adds its options to `app`; `run` is for when it was parsed.
 Command AddBenchCommand(CLI::App& app);
+Command AddDhCommand(CLI::App& app);
+Command AddExamplesCommand(CLI::App& app);
 Command AddInfoCommand(CLI::App& app);
 Command AddFkCommand(CLI::App& app);
 Command AddIkCommand(CLI::App& app);

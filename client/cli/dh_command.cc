@@ -76,8 +76,8 @@ Json TableJson(const v1::DhTable& dh) {
 
 absl::Status RunDh(const DhOptions& options, const GlobalOptions& globals,
                    std::string* output) {
-  const absl::StatusOr<SkeletonFile> file =
-      ReadSkeletonFile(options.file.path, options.file.unit_m);
+  const absl::StatusOr<SkeletonFile> file = ReadSkeletonFile(
+      options.file.path, options.file.unit_m, options.file.skin);
   if (!file.ok()) return file.status();
   const auto service = Service::Open(globals.server);
   if (!service.ok()) return service.status();

@@ -68,8 +68,9 @@ int main(int argc, char** argv) {
   app.fallthrough();
   app.require_subcommand(1);
   const std::vector<Command> commands = {
-      AddInfoCommand(app), AddFkCommand(app),       AddIkCommand(app),
-      AddPlayCommand(app), AddSessionsCommand(app), AddBenchCommand(app)};
+      AddInfoCommand(app),     AddFkCommand(app),       AddIkCommand(app),
+      AddPlayCommand(app),     AddSessionsCommand(app), AddBenchCommand(app),
+      AddExamplesCommand(app), AddDhCommand(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -114,6 +115,35 @@ INSTANTIATE_TEST_SUITE_P(Hosts, ServedCommandTest,
                            return info.param == Host::kInProcess ? "InProcess"
                                                                  : "Server";
                          });
+
+TEST_P(ServedCommandTest, ExamplesAreThoseOfTheBooks) {
+  const Ending ending = Run({"examples", "--out", "."});
+  EXPECT_EQ(ending.exit_code, 0) << ending.err;
+  // The closed forms, J, its pseudo-inverse, an iterate, both ends.
+  for (const char* number :
+       {"8.92820", "1.46410", "-60.000000 deg", "120.000000 deg",
+        "-362.943782580", "180.121434603", "0.001024974020", "0.295302848",
+        "0.447025350", "0.717900872", "-0.625021896", "0.329549507",
+        "0.453006428", "0.712565138", "-0.635649229", "0.329191330",
+        "1.41421356237"}) {
+    EXPECT_THAT(ending.out, HasSubstr(number));
+  }
+  EXPECT_THAT(Read(folder_ / "newton_1d.svg"), HasSubstr("</svg>"));
+}
+
+TEST_P(ServedCommandTest, DhTables) {
+  v1::Skeleton arm;
+  convert::ToProto(*gelenk::testing::PandaArm(), &arm);
+  Write("arm.json", convert::SkeletonToJson(arm));
+  const json table =
+      RunJson({"dh", "arm.json", "--tip", "tip", "--convention", "modified"});
+  ASSERT_THAT(table["rows"], SizeIs(7));
+  EXPECT_NEAR(std::abs(table["rows"][3]["a_m"].get<double>()), 0.0825, 1e-12);
+  EXPECT_NEAR(std::abs(table["rows"][2]["d_m"].get<double>()), 0.316, 1e-12);
+  const Ending bad = Run({"dh", "arm.json", "--tip", "nose"});
+  EXPECT_NE(bad.exit_code, 0);
+  EXPECT_THAT(bad.err, HasSubstr("no end effector or joint \"nose\""));
+}
 
 TEST_P(ServedCommandTest, PlayReachesEveryFrameInsideTheLimits) {
   const json report = RunJson(
