@@ -10,24 +10,6 @@
 namespace gelenk::convert {
 namespace {
 
-v1::SolveReport::Outcome ToProto(SolveOutcome outcome) {
-  switch (outcome) {
-    case SolveOutcome::kConverged:
-      return v1::SolveReport::OUTCOME_CONVERGED;
-    case SolveOutcome::kUnreachable:
-      return v1::SolveReport::OUTCOME_UNREACHABLE;
-    case SolveOutcome::kStalledAtLimits:
-      return v1::SolveReport::OUTCOME_STALLED_AT_LIMITS;
-    case SolveOutcome::kIterationLimit:
-      return v1::SolveReport::OUTCOME_ITERATION_LIMIT;
-    case SolveOutcome::kSingular:
-      return v1::SolveReport::OUTCOME_SINGULAR;
-    case SolveOutcome::kTimeLimit:
-      return v1::SolveReport::OUTCOME_TIME_LIMIT;
-  }
-  return v1::SolveReport::OUTCOME_UNSPECIFIED;
-}
-
 v1::SolverMethod ToProto(SolverMethod method) {
   switch (method) {
     case SolverMethod::kAuto:
@@ -79,6 +61,24 @@ void CopyErrors(const std::vector<double>& errors,
 
 }  // namespace
 
+v1::SolveReport::Outcome OutcomeToProto(SolveOutcome outcome) {
+  switch (outcome) {
+    case SolveOutcome::kConverged:
+      return v1::SolveReport::OUTCOME_CONVERGED;
+    case SolveOutcome::kUnreachable:
+      return v1::SolveReport::OUTCOME_UNREACHABLE;
+    case SolveOutcome::kStalledAtLimits:
+      return v1::SolveReport::OUTCOME_STALLED_AT_LIMITS;
+    case SolveOutcome::kIterationLimit:
+      return v1::SolveReport::OUTCOME_ITERATION_LIMIT;
+    case SolveOutcome::kSingular:
+      return v1::SolveReport::OUTCOME_SINGULAR;
+    case SolveOutcome::kTimeLimit:
+      return v1::SolveReport::OUTCOME_TIME_LIMIT;
+  }
+  return v1::SolveReport::OUTCOME_UNSPECIFIED;
+}
+
 absl::StatusOr<SolverOptions> FromProto(const v1::SolverOptions& proto) {
   SolverOptions options;
   if (proto.has_max_iterations()) {
@@ -129,7 +129,7 @@ void ToProto(const SolverOptions& options, v1::SolverOptions* proto) {
 void ToProto(const SolveReport& report, ReportDetail detail,
              absl::Duration solve_duration, v1::SolveReport* proto) {
   proto->Clear();
-  proto->set_outcome(ToProto(report.outcome));
+  proto->set_outcome(OutcomeToProto(report.outcome));
   proto->set_iteration_count(report.iteration_count);
   proto->set_restart_count(report.restart_count);
   CopyErrors(report.position_errors_m, proto->mutable_position_errors_m());

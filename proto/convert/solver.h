@@ -14,6 +14,8 @@ namespace gelenk::convert {
 absl::StatusOr<SolverOptions> FromProto(const v1::SolverOptions& proto);
 void ToProto(const SolverOptions& options, v1::SolverOptions* proto);
 
+v1::SolveReport::Outcome OutcomeToProto(SolveOutcome outcome);
+
 // `detail` says which parts of the report are filled in. Allocates nothing once
 // `proto` has held a report of that size.
 void ToProto(const SolveReport& report, ReportDetail detail,

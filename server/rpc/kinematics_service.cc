@@ -13,12 +13,14 @@
 #include "gelenk/base/violations.h"
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/kinematics/forward_kinematics.h"
+#include "server/rpc/batch_method.h"
 #include "server/rpc/chain_methods.h"
 #include "server/rpc/find_skeleton.h"
 #include "server/rpc/import_skeleton_call.h"
 #include "server/rpc/page.h"
 #include "server/rpc/skeleton_message.h"
 #include "server/rpc/unary_call.h"
+#include "server/rpc/workspace_call.h"
 #include "server/version.h"
 
 namespace gelenk::server {
@@ -244,6 +246,8 @@ void ServeKinematics(Service* service, ServiceState* state, IoThread* thread) {
       },
       state, thread);
   ServeChains(service, state, thread);
+  ServeBatch(service, state, thread);
+  WorkspaceCall::Start(service, state, thread);
   ImportSkeletonCall::Start(service, state, thread);
 }
 

@@ -80,7 +80,7 @@ class ImportSkeletonTest : public ::testing::Test {
     const auto response = connection_->Call(
         &v1::KinematicsService::Stub::SolveInverseKinematics, request);
     ASSERT_TRUE(response.ok()) << response.status();
-    EXPECT_EQ(response->report().outcome(), v1::OUTCOME_CONVERGED);
+    EXPECT_EQ(response->report().outcome(), v1::SolveReport::OUTCOME_CONVERGED);
   }
 
   gelenk::testing::ServerProcess gelenkd_{GELENKD};

@@ -225,8 +225,8 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
   const kernel::TreeLayout tree = problem.tree().Layout();
   const Skeleton& skeleton = problem.skeleton();
   // The kernel of chains knows no bounds of turns, and no free plants.
-  chain_ = bounded || problem.has_free_plants() ? nullptr
-                                                : problem.tree().chain();
+  chain_ =
+      bounded || problem.has_free_plants() ? nullptr : problem.tree().chain();
   Reserve(problem, tree);
   std::copy(positions.begin(), positions.end(), start_.begin());
   if (problem.has_free_plants()) problem.CopyTargets(positions, targets_);

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "absl/types/span.h"
-#include "gelenk/ik/effector_task.h"
 #include "gelenk/ik/bone_chain.h"
+#include "gelenk/ik/effector_task.h"
 #include "gelenk/ik/kernel/tree_layout.h"
 #include "gelenk/ik/serial_arm.h"
 #include "gelenk/ik/serial_chain.h"

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gelenk/ik/goal.h"
 #include "gelenk/ik/sparse_tree.h"
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/math/rotation.h"
@@ -37,9 +38,8 @@ class TipTree {
  public:
   explicit TipTree(const std::shared_ptr<const Skeleton>& skeleton)
       : skeleton_(skeleton),
-        tree_(*skeleton,
-              std::vector<EffectorTask>{
-                  {skeleton->FindEffector("tip").value(), true, false}}) {}
+        tree_(*skeleton, std::vector<EffectorTask>{
+                             TaskOf(*skeleton, PositionGoal{"tip"})}) {}
 
   absl::StatusOr<BoneChain> Bones() const {
     return BoneChain::Of(*skeleton_, tree_.Layout(), tree_.joints_of_nodes());

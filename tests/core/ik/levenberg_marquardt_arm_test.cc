@@ -42,6 +42,9 @@ using ::gelenk::testing::WithProbability;
 constexpr double kRounding = 1e-9;
 // A stream's frame: each joint this near to its answer.
 constexpr double kWarmDistance = 0.1;
+// Energies of closest poses that differ by less are the same valley: trees stop
+// where six iterations gain less than 1e-5.
+constexpr double kSameEnergy = 1e-3;
 // The finest that robots ask for, m and rad.
 constexpr double kFine = 1e-5;
 
@@ -202,7 +205,7 @@ TEST_P(ArmTest, RandomArmsMeetWarmTargets) {
 // A goal of weight zero beside it makes the same problem no arm.
 IkProblem SolvedAsTree(const std::shared_ptr<const Skeleton>& skeleton,
                        const Goal& goal) {
-  Goal off = PositionGoalFor(skeleton->joint(0).id, {});
+  Goal off = PositionGoalFor(skeleton->joint(0).id, Eigen::Vector3d::Zero());
   off.id = "off";
   off.weight = 0;
   return IkProblem::Create(skeleton, {goal, off}).value();
@@ -214,12 +217,14 @@ TEST_P(ArmTest, AgreesWithTheKernelOfTrees) {
   Random random(5);
   int reached = 0;
   int missed = 0;
+  int worse = 0;
+  int better = 0;
   for (int i = 0; i < 400; ++i) {
     const auto skeleton = RandomArm(random);
     const Eigen::VectorXd truth = RandomPoseWithinLimits(random, *skeleton);
     RigidTransform pose = EffectorPose(*skeleton, truth, "e0");
     const bool far = i % 3 == 0;
-    if (far) pose.translation *= Uniform(random, 1.5, 3);
+    if (far) pose.translation *= Uniform(random, 3, 6);
     Goal goal = PoseGoalFor("e0", pose);
     if (i % 5 == 1) goal = PositionGoalFor("e0", pose.translation);
     if (i % 5 == 2) goal = RotationGoalFor("e0", pose.rotation);
@@ -255,11 +260,14 @@ TEST_P(ArmTest, AgreesWithTheKernelOfTrees) {
       return std::pow(report.position_errors_m[0], 2) +
              std::pow(scale * chord, 2);
     };
-    // Not worse; a valley elsewhere may be deeper.
-    EXPECT_LE(energy(arm.report), energy(tree.report) * (1 + 1e-3)) << i;
+    worse += energy(arm.report) > energy(tree.report) * (1 + kSameEnergy);
+    better += energy(arm.report) < energy(tree.report) * (1 - kSameEnergy);
   }
+  // Now and then one of them finds a valley that is deeper.
+  EXPECT_LE(worse, missed / 25);
+  EXPECT_GE(better, worse);
   EXPECT_GT(reached, 200);
-  EXPECT_GT(missed, 80);
+  EXPECT_GT(missed, 60);
 }
 
 // The first steps of both solve the same equations.

@@ -42,19 +42,6 @@ SessionState ArmState() { return ArmSession(kNow)->Snapshot().state; }
 
 // --- Time ---
 
-TEST(SessionMessageTest, DurationsComeRound) {
-  for (absl::Duration duration :
-       {absl::ZeroDuration(), absl::Nanoseconds(1), absl::Milliseconds(16),
-        absl::Hours(24), absl::Seconds(1) - absl::Nanoseconds(1),
-        -absl::Milliseconds(1500)}) {
-    google::protobuf::Duration proto;
-    ToProto(duration, &proto);
-    EXPECT_EQ(FromProto(proto), duration);
-    EXPECT_GE(static_cast<int64_t>(proto.seconds()) * proto.nanos(), 0)
-        << "of one sign, as the message wants it";
-  }
-}
-
 TEST(SessionMessageTest, TimesAreUnixTimes) {
   google::protobuf::Timestamp proto;
   ToProto(absl::FromUnixSeconds(1700000000) + absl::Nanoseconds(5), &proto);

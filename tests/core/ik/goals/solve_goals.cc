@@ -16,9 +16,8 @@ Solved SolveGoals(const std::shared_ptr<const Skeleton>& skeleton,
   for (size_t i = 0; i < goals.size(); ++i) goals[i].id = absl::StrCat("g", i);
   Solved solved;
   solved.positions = start;
-  IkSolver().Solve(
-      IkProblem::Create(skeleton, std::move(goals)).value(), options,
-      SolveStart::kWarm, solved.positions, solved.report);
+  IkSolver().Solve(IkProblem::Create(skeleton, std::move(goals)).value(),
+                   options, SolveStart::kWarm, solved.positions, solved.report);
   return solved;
 }
 
