@@ -182,7 +182,8 @@ bool LevenbergMarquardtSolver::ReachOut(const IkProblem& problem,
                                         VectorView positions,
                                         kernel::Attempt& attempt) {
   const BoneChain* bones = problem.tree().bones();
-  if (bones == nullptr || chain_ == nullptr) return false;
+  const bool narrowed = settings.lower != tree.lower;
+  if (bones == nullptr || chain_ == nullptr || narrowed) return false;
   const kernel::TaskTarget& target = problem.targets()[0];
   const double* counts = target.row_counts;
   const bool whole = counts[0] > 0 && counts[1] > 0 && counts[2] > 0;
@@ -225,8 +226,10 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
   const kernel::TreeLayout tree = problem.tree().Layout();
   const Skeleton& skeleton = problem.skeleton();
   // The kernel of chains knows no bounds of turns, and no free plants.
-  chain_ =
-      bounded || problem.has_free_plants() ? nullptr : problem.tree().chain();
+  const SerialChain* chain = problem.tree().chain();
+  const bool fits = chain != nullptr && !problem.has_free_plants() &&
+                    !(bounded && chain->has_spherical());
+  chain_ = fits ? chain : nullptr;
   Reserve(problem, tree);
   std::copy(positions.begin(), positions.end(), start_.begin());
   if (problem.has_free_plants()) problem.CopyTargets(positions, targets_);

@@ -90,6 +90,7 @@ SerialChain::SerialChain(const kernel::TreeLayout& tree) {
       }
       Place(tree, next[lane]++, lane, step);
     }
+    has_spherical_ = has_spherical_ || type == NodeType::kSpherical;
     step.record = layout_.record_size;
     layout_.record_size += type == NodeType::kSpherical
                                ? kernel::kSphericalRecord

@@ -22,6 +22,8 @@ class SerialChain {
 
   kernel::ChainLayout Layout() const;
 
+  bool has_spherical() const { return has_spherical_; }
+
   size_t ByteSize() const {
     return steps_.capacity() * sizeof(kernel::ChainStep);
   }
@@ -31,6 +33,7 @@ class SerialChain {
 
   std::vector<kernel::ChainStep> steps_;
   kernel::ChainLayout layout_ = {};
+  bool has_spherical_ = false;
 };
 
 }  // namespace gelenk

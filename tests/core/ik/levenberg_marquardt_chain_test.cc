@@ -392,6 +392,30 @@ TEST(ChainReachTest, StraightChainFindsTheTargetOnItsLine) {
   }
 }
 
+// Frame by frame, also where it reaches out for what it cannot reach.
+TEST_P(ChainTest, KeepsToTheLargestStepOfAFrame) {
+  const auto chain = EqualLinks(40, JointType::kRevolute);
+  SolverOptions options;
+  options.max_step = 0.01;
+  for (double distance : {0.5, 2.0}) {
+    const Goal goal = PositionGoalFor("tip", {0, distance, 0});
+    const IkProblem problem = IkProblem::Create(chain, {goal}).value();
+    LevenbergMarquardtSolver solver(GetParam());
+    Eigen::VectorXd positions = Eigen::VectorXd::Constant(40, 0.02);
+    SolveReport report;
+    double error = OraclePositionError(*chain, goal, positions);
+    for (int frame = 0; frame < 5; ++frame) {
+      const Eigen::VectorXd before = positions;
+      solver.Solve(problem, options, SolveStart::kWarm, positions, report);
+      EXPECT_LE((positions - before).cwiseAbs().maxCoeff(),
+                *options.max_step + kRounding);
+      const double now = OraclePositionError(*chain, goal, positions);
+      EXPECT_LT(now, error);
+      error = now;
+    }
+  }
+}
+
 TEST_P(ChainTest, TakesAnglesOfManyTurns) {
   const auto chain = EqualLinks(30, JointType::kRevolute);
   const Goal goal = PositionGoalFor("tip", {0.3, 0.4, 0});

@@ -119,16 +119,9 @@ class ChainSolver {
     for (int k = 0; k < 3; ++k) force[k] = target_.row_scale[k] * error_[k];
     Pack pushed = {}, largest = {};
     for (int part = 0; part < part_end_; part += kWidth) {
-      Pack b[9], e[3], tip[3], m[6] = {};
-      for (int k = 0; k < 9; ++k) b[k] = Get(base_rotation_, k, part);
+      Pack e[3], tip[3], m[6] = {};
       ToSegments(force, part, e);
-      for (int k = 0; k < 3; ++k) tip[k] = tip_[k] - Get(base_, k, part);
-      {
-        Pack local[3];
-        for (int k = 0; k < 3; ++k)
-          local[k] = b[k] * tip[0] + b[3 + k] * tip[1] + b[6 + k] * tip[2];
-        for (int k = 0; k < 3; ++k) tip[k] = local[k];
-      }
+      TipInSegments(part, tip);
       for (int s = 0; s < chain_.step_count; ++s) {
         const ChainStep& step = chain_.steps[s];
         LaneNumbers* record = RecordOf(step);
@@ -411,8 +404,15 @@ class ChainSolver {
     return energy;
   }
 
-  // A world vector in the frames of the segments.
-  GELENK_INLINE void ToSegments(const double* v, int part, Pack* out) const {
+  GELENK_INLINE void TipInSegments(int part, Pack* out) const {
+    Pack way[3];
+    for (int k = 0; k < 3; ++k) way[k] = tip_[k] - Get(base_, k, part);
+    ToSegments(way, part, out);
+  }
+
+  // A world vector, one for all or one for each, in the frames of the segments.
+  template <typename Number>
+  GELENK_INLINE void ToSegments(const Number* v, int part, Pack* out) const {
     for (int k = 0; k < 3; ++k) {
       out[k] = Get(base_rotation_, k, part) * v[0] +
                Get(base_rotation_, 3 + k, part) * v[1] +
