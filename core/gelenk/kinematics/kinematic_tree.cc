@@ -66,7 +66,7 @@ class KinematicTreeBuilder {
     ForwardJoint out = {};
     out.parent = skeleton_.span(i).parent;
     out.constants = static_cast<int>(constants_.size());
-    out.position = skeleton_.span(owner).position_offset;
+    out.position = std::max(0, skeleton_.span(owner).position_offset);
     out.angle = -1;
     rest_ = joint.parent_from_joint.rotation.toRotationMatrix();
     const double multiplier = joint.mimic ? joint.mimic->multiplier : 1;

@@ -124,8 +124,12 @@ struct Lanes : PackOf<kCount> {
       return __builtin_ia32_movmskpd((Signs)mask);
     }
 #endif
+    // Through memory: g++ 12 under UBSan forgets the index into a vector that
+    // the processor does not have.
+    int64_t signs[kCount];
+    *reinterpret_cast<Mask*>(signs) = mask;
     unsigned bits = 0;
-    for (int i = 0; i < kCount; ++i) bits |= (mask[i] < 0 ? 1u : 0u) << i;
+    for (int i = 0; i < kCount; ++i) bits |= (signs[i] < 0 ? 1u : 0u) << i;
     return bits;
   }
 

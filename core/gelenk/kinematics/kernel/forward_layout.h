@@ -39,7 +39,7 @@ enum class MotionType : uint8_t {
 struct ForwardJoint {
   int parent;     // -1 for the base
   int constants;  // where they start
-  int position;   // first number in q, -1 for none
+  int position;   // first number in q, 0 for none
   int angle;      // index of its angle, -1 for none
   MotionType type;
   // kSlide: the way is multiplier * q[position] + offset, m.
