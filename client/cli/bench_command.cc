@@ -18,6 +18,7 @@
 #include "client/cli/progress_bar.h"
 #include "client/cli/skeleton_file.h"
 #include "client/cli/text/table.h"
+#include "gelenk/ik/batch_solver.h"
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/instruction_set.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
@@ -36,6 +37,7 @@ struct BenchOptions {
   std::optional<int> restarts;
   InstructionSet level = BestInstructionSet();
   int passes = 3;
+  bool batch = false;
   std::string out_path;
   Format format = Format::kTable;
 };
@@ -49,6 +51,40 @@ SolverOptions SolverOptionsFor(const BenchOptions& options) {
   return solver;
 }
 
+SolveStart StartOf(const BenchOptions& options) {
+  return options.start == BenchStart::kWarm ? SolveStart::kWarm
+                                            : SolveStart::kCold;
+}
+
+GoalTarget TargetFor(const IkSet& set, int problem, int goal) {
+  const RigidTransform& target = set.target(problem, goal);
+  return set.goal == BenchGoal::kPose ? GoalTarget(target)
+                                      : GoalTarget(target.translation);
+}
+
+// All targets in one call, `passes` times.
+IkAnswers SolveAtOnce(const BenchOptions& options,
+                      const SolverOptions& solver_options, const IkSet& set,
+                      IkProblem& problem) {
+  std::vector<GoalTarget> targets;
+  Eigen::MatrixXd starts(set.skeleton->position_count(), set.size());
+  for (int i = 0; i < set.size(); ++i) {
+    starts.col(i) = set.start(i);
+    for (int g = 0; g < static_cast<int>(set.goals.size()); ++g) {
+      targets.push_back(TargetFor(set, i, g));
+    }
+  }
+  BatchSolver solver(options.level);
+  BatchReport report;
+  return RunIkBatch(
+      starts,
+      [&](Eigen::Ref<Eigen::MatrixXd> positions) {
+        solver.Solve(problem, targets, solver_options, StartOf(options),
+                     positions, report);
+      },
+      options.passes);
+}
+
 absl::StatusOr<IkAnswers> Solve(const BenchOptions& options, const IkSet& set) {
   absl::StatusOr<IkProblem> problem =
       IkProblem::Create(set.skeleton, set.goals);
@@ -57,19 +93,16 @@ absl::StatusOr<IkAnswers> Solve(const BenchOptions& options, const IkSet& set) {
   if (absl::Status status = CheckSolverOptions(solver_options); !status.ok()) {
     return status;
   }
+  if (options.batch) {
+    return SolveAtOnce(options, solver_options, set, *problem);
+  }
   LevenbergMarquardtSolver solver(options.level);
   SolveReport report;
-  const SolveStart start = options.start == BenchStart::kWarm
-                               ? SolveStart::kWarm
-                               : SolveStart::kCold;
   const auto solve = [&](int index, Eigen::Ref<Eigen::VectorXd> positions) {
     for (int g = 0; g < static_cast<int>(set.goals.size()); ++g) {
-      const RigidTransform& target = set.target(index, g);
-      problem->SetTarget(g, set.goal == BenchGoal::kPose
-                                ? GoalTarget(target)
-                                : GoalTarget(target.translation));
+      problem->SetTarget(g, TargetFor(set, index, g));
     }
-    solver.Solve(*problem, solver_options, start, positions, report);
+    solver.Solve(*problem, solver_options, StartOf(options), positions, report);
   };
   ProgressBar progress("solving", int64_t{options.passes} * set.size());
   return RunIkSet(set, solve, options.passes,
@@ -102,6 +135,7 @@ Json FiguresJson(const BenchOptions& options, const IkFigures& figures) {
   json["outside_limits"] = figures.outside_limits;
   json["start"] = options.start == BenchStart::kWarm ? "warm" : "cold";
   json["tolerance"] = options.tolerance;
+  json["batch"] = options.batch;
   json["instruction_set"] = std::string(InstructionSetName(options.level));
   return json;
 }
@@ -116,9 +150,14 @@ std::string FiguresText(const BenchOptions& options, const IkFigures& figures) {
                          " m and rad"));
   facts.Add("solved", absl::StrCat(Percent(figures.solved, figures.count), " (",
                                    figures.solved, "), by forward kinematics"));
-  facts.Add("mean", absl::StrCat(Significant(figures.mean_us, 3), " µs"));
-  facts.Add("median", absl::StrCat(Significant(figures.median_us, 3), " µs"));
-  facts.Add("p99", absl::StrCat(Significant(figures.p99_us, 3), " µs"));
+  if (options.batch) {
+    facts.Add("a target", absl::StrCat(Significant(figures.mean_us, 3),
+                                       " µs, of one call for all"));
+  } else {
+    facts.Add("mean", absl::StrCat(Significant(figures.mean_us, 3), " µs"));
+    facts.Add("median", absl::StrCat(Significant(figures.median_us, 3), " µs"));
+    facts.Add("p99", absl::StrCat(Significant(figures.p99_us, 3), " µs"));
+  }
   if (options.start == BenchStart::kWarm) {
     facts.Add("jumps",
               absl::StrCat(Percent(figures.jumped, figures.solved), " (",
@@ -218,6 +257,8 @@ Command AddBenchCommand(CLI::App& app) {
                  "(default 3)")
       ->check(CLI::Range(1, 1000).description(""))
       ->option_text("N");
+  ik->add_flag("--batch", options->batch,
+               "Solve all targets in one call, and divide its time");
   ik->add_option("--out", options->out_path,
                  "Write the answers: a row a target, joints as columns")
       ->option_text("FILE.csv");

@@ -36,6 +36,9 @@ Command AddFkCommand(CLI::App& app);
 Command AddIkCommand(CLI::App& app);
 Command AddPlayCommand(CLI::App& app);
 Command AddSessionsCommand(CLI::App& app);
+Command AddTwoBoneCommand(CLI::App& app);
+Command AddTwoLinkCommand(CLI::App& app);
+Command AddWorkspaceCommand(CLI::App& app);
 
 // --format table|json
 void AddFormatOption(CLI::App& app, Format* format);

@@ -7,6 +7,7 @@
 #include "client/cli/command.h"
 #include "client/cli/file_bytes.h"
 #include "client/cli/joint_frames_text.h"
+#include "client/cli/picture/pose_picture.h"
 #include "client/cli/service.h"
 #include "client/cli/skeleton_file.h"
 #include "client/cli/text/number_list.h"
@@ -22,6 +23,7 @@ struct FkOptions {
   std::string pose;
   std::string pose_path;
   std::optional<int> frame;
+  std::string picture_path;
 };
 
 v1::Pose PoseOf(const std::vector<double>& numbers) {
@@ -91,7 +93,13 @@ absl::Status RunFk(const FkOptions& options, const GlobalOptions& globals,
       options.format == Format::kJson
           ? JsonText({{"joints", JointFramesJson(*file->skeleton, frames)}})
           : JointFramesText(*file->skeleton, frames);
-  return absl::OkStatus();
+  if (options.picture_path.empty()) return absl::OkStatus();
+  // The service took the pose, so it is of this skeleton.
+  const Eigen::VectorXd positions = Eigen::Map<const Eigen::VectorXd>(
+      pose->positions().data(), pose->positions_size());
+  return WriteFile(
+      options.picture_path,
+      PosePictureSvg(*file->skeleton, positions, {}, BaseName(file->path)));
 }
 
 }  // namespace
@@ -114,6 +122,8 @@ Command AddFkCommand(CLI::App& app) {
   pose->add_option("--frame", options->frame, "A frame of the BVH file, from 0")
       ->option_text("N");
   pose->require_option(0, 1);
+  fk->add_option("--picture", options->picture_path, "Draw the pose")
+      ->option_text("FILE.svg");
   AddFormatOption(*fk, &options->format);
   fk->footer(
       "Examples:\n"

@@ -1,16 +1,22 @@
 // gelenk ik: goals in, one pose out.
+#include <google/protobuf/util/json_util.h>
+
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "client/cli/command.h"
+#include "client/cli/file_bytes.h"
 #include "client/cli/goal_argument.h"
 #include "client/cli/ik_result_text.h"
+#include "client/cli/picture/pose_picture.h"
 #include "client/cli/service.h"
 #include "client/cli/skeleton_file.h"
 #include "client/cli/text/number_list.h"
 #include "client/cli/tolerance.h"
 #include "client/cli/uploaded_skeleton.h"
+#include "convert/geometry.h"
 #include "convert/goal.h"
 
 namespace gelenk::cli {
@@ -27,6 +33,8 @@ struct IkOptions {
   std::string start = kRest;
   std::string tolerance;
   bool diagnose = false;
+  std::string request_path;
+  std::string picture_path;
 };
 
 using GoalParser = absl::StatusOr<GoalKind> (*)(absl::string_view);
@@ -51,13 +59,49 @@ absl::StatusOr<std::vector<Goal>> GoalsOf(const IkOptions& options) {
   return NameGoals(std::move(kinds));
 }
 
+absl::StatusOr<v1::SolveInverseKinematicsRequest> RequestFromFile(
+    const std::string& path) {
+  const absl::StatusOr<std::string> json = ReadFile(path);
+  if (!json.ok()) return json.status();
+  v1::SolveInverseKinematicsRequest request;
+  const auto status =
+      google::protobuf::util::JsonStringToMessage(*json, &request);
+  if (!status.ok()) {
+    return InFile(path,
+                  absl::InvalidArgumentError(std::string(status.message())));
+  }
+  return request;
+}
+
+// The points that goals name, for the picture.
+std::vector<Eigen::Vector3d> TargetPoints(
+    const v1::SolveInverseKinematicsRequest& request) {
+  std::vector<Eigen::Vector3d> points;
+  for (const v1::Goal& goal : request.goals()) {
+    if (goal.has_position()) {
+      points.push_back(convert::FromProto(goal.position().world_position()));
+    } else if (goal.has_pose()) {
+      points.push_back(
+          convert::FromProto(goal.pose().world_pose().translation()));
+    }
+  }
+  return points;
+}
+
 // All but the skeleton's name.
 absl::StatusOr<v1::SolveInverseKinematicsRequest> RequestFor(
     const IkOptions& options) {
   const absl::StatusOr<std::vector<Goal>> goals = GoalsOf(options);
   if (!goals.ok()) return goals.status();
   v1::SolveInverseKinematicsRequest request;
-  convert::ToProto(*goals, request.mutable_goals());
+  if (!options.request_path.empty()) {
+    auto read = RequestFromFile(options.request_path);
+    if (!read.ok()) return read;
+    request = *std::move(read);
+  }
+  google::protobuf::RepeatedPtrField<v1::Goal> more;
+  convert::ToProto(*goals, &more);
+  request.mutable_goals()->MergeFrom(more);
   // The rest pose is what is meant by no start: the solve is then a cold one.
   if (options.start != kRest) {
     const auto numbers = ParseNumbers(options.start);
@@ -66,7 +110,7 @@ absl::StatusOr<v1::SolveInverseKinematicsRequest> RequestFor(
                                                               numbers->end());
   }
   v1::SolverOptions& solver = *request.mutable_solver_options();
-  solver.set_diagnose(options.diagnose);
+  if (options.diagnose) solver.set_diagnose(true);
   if (!options.tolerance.empty()) {
     const auto tolerance = ParseTolerance(options.tolerance, Tolerance());
     if (!tolerance.ok()) return tolerance.status();
@@ -95,7 +139,14 @@ absl::Status RunIk(const IkOptions& options, const GlobalOptions& globals,
   *output += options.format == Format::kJson
                  ? JsonText(IkResultJson(*file->skeleton, *request, *response))
                  : IkResultText(*file->skeleton, *request, *response);
-  return absl::OkStatus();
+  if (options.picture_path.empty()) return absl::OkStatus();
+  const auto& q = response->pose().positions();
+  const Eigen::VectorXd positions =
+      Eigen::Map<const Eigen::VectorXd>(q.data(), q.size());
+  return WriteFile(
+      options.picture_path,
+      PosePictureSvg(*file->skeleton, positions, TargetPoints(*request),
+                     BaseName(file->path)));
 }
 
 void AddGoalOption(CLI::App& ik, const std::string& name,
@@ -140,11 +191,20 @@ Command AddIkCommand(CLI::App& app) {
       ->option_text("M[,RAD]");
   ik->add_flag("--diagnose", options->diagnose,
                "Also print rank and manipulability");
+  ik->add_option("--request", options->request_path,
+                 "Goals of any kind, priorities, options: proto3 JSON of "
+                 "gelenk.v1.SolveInverseKinematicsRequest, without skeleton; "
+                 "the goals above come after its own")
+      ->option_text("FILE.json");
+  ik->add_option("--picture", options->picture_path,
+                 "Draw the pose and its targets")
+      ->option_text("FILE.svg");
   AddFormatOption(*ik, &options->format);
   ik->parse_complete_callback([options] {
     if (options->position_goals.empty() && options->rotation_goals.empty() &&
-        options->pose_goals.empty()) {
-      throw CLI::RequiredError("a --goal, --rotation-goal or --pose-goal");
+        options->pose_goals.empty() && options->request_path.empty()) {
+      throw CLI::RequiredError(
+          "a --goal, --rotation-goal, --pose-goal or --request");
     }
   });
   ik->footer(

@@ -70,7 +70,8 @@ int main(int argc, char** argv) {
   const std::vector<Command> commands = {
       AddInfoCommand(app),     AddFkCommand(app),       AddIkCommand(app),
       AddPlayCommand(app),     AddSessionsCommand(app), AddBenchCommand(app),
-      AddExamplesCommand(app), AddDhCommand(app)};
+      AddExamplesCommand(app), AddDhCommand(app),       AddTwoLinkCommand(app),
+      AddTwoBoneCommand(app),  AddWorkspaceCommand(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

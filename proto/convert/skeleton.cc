@@ -147,6 +147,12 @@ absl::StatusOr<std::shared_ptr<const Skeleton>> FromProto(
 }
 
 void ToProto(const Skeleton& skeleton, v1::Skeleton* proto) {
+  // The joints take the shorthand's place, and what it implied.
+  if (proto->has_planar_chain() &&
+      proto->dimension() == v1::DIMENSION_UNSPECIFIED) {
+    proto->set_dimension(v1::DIMENSION_PLANAR);
+  }
+  proto->clear_shorthand();
   proto->clear_joints();
   proto->clear_end_effectors();
   proto->clear_position_offsets();

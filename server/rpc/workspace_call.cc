@@ -22,6 +22,7 @@ void ToProto(const PlanarAnnulus& annulus, v1::PlanarAnnulus* proto) {
   convert::ToProto(annulus.world_center, proto->mutable_world_center());
   proto->set_inner_radius_m(annulus.inner_radius_m);
   proto->set_outer_radius_m(annulus.outer_radius_m);
+  convert::ToProto(annulus.world_normal, proto->mutable_world_normal());
 }
 
 void ToProto(const WorkspaceMap& map, v1::VoxelGrid* proto) {

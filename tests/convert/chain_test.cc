@@ -46,6 +46,17 @@ TEST(ConvertChainTest, APlanarChainBecomesASkeletonWithJoints) {
   EXPECT_EQ(FromProto(movable).value()->velocity_count(), 4);
 }
 
+// As a file of a chain is read, and then sent on.
+TEST(ConvertChainTest, JointsTakeTheShorthandsPlace) {
+  v1::Skeleton message = Chain();
+  ToProto(*FromProto(message).value(), &message);
+  EXPECT_EQ(message.shorthand_case(), v1::Skeleton::SHORTHAND_NOT_SET);
+  EXPECT_EQ(message.dimension(), v1::DIMENSION_PLANAR);
+  const auto again = FromProto(message);
+  ASSERT_TRUE(again.ok()) << again.status();
+  EXPECT_EQ((*again)->velocity_count(), 2);
+}
+
 TEST(ConvertChainTest, ATableComesRound) {
   const DhTable table = FromProto(Table()).value();
   EXPECT_EQ(table.convention, DhConvention::kModified);

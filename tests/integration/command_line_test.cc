@@ -145,6 +145,93 @@ TEST_P(ServedCommandTest, DhTables) {
   EXPECT_THAT(bad.err, HasSubstr("no end effector or joint \"nose\""));
 }
 
+TEST_P(ServedCommandTest, WorkspacesExactAndSampled) {
+  Write("chain.json", R"({"planarChain": {"linkLengths": [4, 1, 2]}})");
+  const json exact = RunJson(
+      {"workspace", "chain.json", "--tip", "tip", "--picture", "ring.svg"});
+  EXPECT_EQ(exact["annulus"]["inner_radius_m"], 1);
+  EXPECT_EQ(exact["annulus"]["outer_radius_m"], 7);
+  EXPECT_EQ(exact["annulus"]["world_normal"], json({0, 0, 1}));
+  EXPECT_THAT(Read(folder_ / "ring.svg"), HasSubstr("</svg>"));
+
+  const json map =
+      RunJson({"workspace", "chain.json", "--tip", "tip", "--samples", "20000",
+               "--out", "cloud.csv", "--picture", "map.svg"})["map"];
+  EXPECT_EQ(map["samples"], 20000);
+  EXPECT_EQ(map["size"][2], 1);
+  EXPECT_THAT(Read(folder_ / "map.svg"), HasSubstr("</svg>"));
+  std::istringstream cloud(Read(folder_ / "cloud.csv"));
+  std::string line;
+  std::getline(cloud, line);
+  EXPECT_EQ(line, "x_m,y_m,z_m,reach_count,mean_manipulability");
+  int rows = 0;
+  const double slack = map["voxel_size_m"];
+  while (std::getline(cloud, line)) {
+    double x = 0;
+    double y = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf", &x, &y), 2);
+    EXPECT_GE(std::hypot(x, y), 1 - slack);
+    EXPECT_LE(std::hypot(x, y), 7 + slack);
+    ++rows;
+  }
+  EXPECT_EQ(rows, map["reached_voxels"]);
+
+  const Ending bad = Run({"workspace", "chain.json", "--tip", "nose"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("no end effector or joint \"nose\""));
+}
+
+TEST_P(ServedCommandTest, TwoLinksInClosedForm) {
+  const json both = RunJson({"two-link", "--lengths", "10,10", "--target",
+                             "10,0", "--picture", "links.svg"});
+  ASSERT_THAT(both["solutions"], SizeIs(2));
+  for (const json& solution : both["solutions"]) {
+    const double first = solution["angles_rad"][0];
+    const double second = solution["angles_rad"][1];
+    EXPECT_NEAR(std::abs(first), M_PI / 3, 1e-12);
+    EXPECT_NEAR(second, -2 * first, 1e-12);
+  }
+  EXPECT_THAT(Read(folder_ / "links.svg"), HasSubstr("</svg>"));
+  const json limited = RunJson({"two-link", "--lengths", "10,10", "--target",
+                                "10,0", "--limits", "0,3,-3,0"});
+  EXPECT_EQ(limited["solutions"][limited["best"].get<int>()]["within_limits"],
+            true);
+  EXPECT_GT(limited["solutions"][limited["best"].get<int>()]["angles_rad"][0],
+            0);
+  const json leg =
+      RunJson({"two-bone", "--root", "0,1,0", "--mid", "0,0.5,0.05", "--tip",
+               "0,0,0", "--target", "0,0.2,0.3", "--pole", "0,0.5,1"});
+  EXPECT_EQ(leg["unreachable"], false);
+  const json& knee = leg["solutions"][leg["best"].get<int>()]["world_mid_m"];
+  // The bones keep their lengths, and the knee is on the pole's side.
+  EXPECT_NEAR(std::hypot(knee[1].get<double>() - 1, knee[2].get<double>()),
+              std::hypot(0.5, 0.05), 1e-12);
+  EXPECT_GT(knee[2].get<double>(), 0);
+
+  const Ending bad = Run({"two-link", "--lengths", "10,-1", "--target", "1,0"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("planar.lower_length_m"));
+  EXPECT_EQ(Run({"two-link", "--lengths", "10", "--target", "1,0"}).exit_code,
+            2);
+}
+
+TEST_P(ServedCommandTest, AnyGoalAsJson) {
+  Write("chain.json", R"({"planarChain": {"linkLengths": [1, 1, 1]}})");
+  Write("request.json", R"({"goals": [
+    {"goalId": "reach", "position": {"endEffectorId": "tip",
+     "worldPosition": {"x": 1.5, "y": 1}, "axes": {"x": true, "y": true}}},
+    {"goalId": "rest", "weight": 1e-6, "posture": {"pose":
+     {"positions": [0.5, 0.5, 0.5]}}}]})");
+  const json solved = RunJson({"ik", "chain.json", "--request", "request.json",
+                               "--picture", "pose.svg"});
+  EXPECT_EQ(solved["outcome"], "converged") << solved;
+  EXPECT_THAT(Read(folder_ / "pose.svg"), HasSubstr("</svg>"));
+  Write("bad.json", R"({"goals": [{"x": 1}]})");
+  const Ending bad = Run({"ik", "chain.json", "--request", "bad.json"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("goals[0]"));
+}
+
 TEST_P(ServedCommandTest, PlayReachesEveryFrameInsideTheLimits) {
   const json report = RunJson(
       {"play", "walk.bvh", "--out", "solved.bvh", "--picture", "solved.svg"});

@@ -88,6 +88,24 @@ IkAnswers RunIkSet(const IkSet& set, const SolveProblem& solve, int passes,
   return answers;
 }
 
+IkAnswers RunIkBatch(const Eigen::MatrixXd& starts, const SolveBatch& solve,
+                     int passes) {
+  IkAnswers answers;
+  std::vector<double> times(passes);
+  for (int pass = -1; pass < passes; ++pass) {
+    answers.positions = starts;
+    const Clock::time_point begin = Clock::now();
+    solve(answers.positions);
+    if (pass < 0) continue;
+    times[pass] =
+        std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+  }
+  answers.durations_us.assign(
+      starts.cols(),
+      *std::min_element(times.begin(), times.end()) / starts.cols());
+  return answers;
+}
+
 IkFigures JudgeIkAnswers(const IkSet& set, const IkAnswers& answers,
                          double tolerance) {
   IkFigures figures;

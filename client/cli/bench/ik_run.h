@@ -37,6 +37,14 @@ struct IkAnswers {
 IkAnswers RunIkSet(const IkSet& set, const SolveProblem& solve, int passes,
                    const std::function<void(int)>& progress = nullptr);
 
+// Solves all problems in one call: a column a problem, starts in, answers out.
+using SolveBatch = std::function<void(Eigen::Ref<Eigen::MatrixXd> positions)>;
+
+// One call to warm up, then `passes` of them; every problem gets the same share
+// of the fastest: a call is long enough to be interrupted each time.
+IkAnswers RunIkBatch(const Eigen::MatrixXd& starts, const SolveBatch& solve,
+                     int passes);
+
 struct IkFigures {
   int count = 0;
   // Within tolerance (kAxisSlack) and limits.

@@ -35,6 +35,12 @@ line, polyline { fill: none; stroke-linecap: round; stroke-linejoin: round; }
 .unreachable { fill: #d9622b; }
 .exhausted { fill: #b3262e; }
 .unanswered { fill: #b9bec6; }
+.shade1 { fill: #d6e4f3; }
+.shade2 { fill: #abc9e7; }
+.shade3 { fill: #7dabd9; }
+.shade4 { fill: #518ac6; }
+.shade5 { fill: #2f68a8; }
+.shade6 { fill: #194a82; }
 @media (prefers-color-scheme: dark) {
   text { fill: #a3acb8; }
   .paper { fill: #16191d; }

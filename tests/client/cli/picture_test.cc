@@ -4,8 +4,12 @@
 #include "client/cli/picture/camera.h"
 #include "client/cli/picture/figure_row.h"
 #include "client/cli/picture/play_picture.h"
+#include "client/cli/picture/pose_picture.h"
 #include "client/cli/picture/stick_figure.h"
 #include "client/cli/picture/svg.h"
+#include "client/cli/picture/two_link_picture.h"
+#include "client/cli/picture/workspace_picture.h"
+#include "gelenk/skeleton/planar_chain.h"
 #include "tests/client/cli/sample_playback.h"
 #include "tests/client/cli/well_formed_xml.h"
 
@@ -130,6 +134,77 @@ TEST(PlayPictureTest, NamesOfFilesAreEscaped) {
   Drawn(playback);
   EXPECT_THAT(PlayPictureHtml(playback, MeasureResiduals(playback)),
               Not(HasSubstr("<script>")));
+}
+
+// Counts the elements of any picture, which is well formed.
+std::map<std::string, int> ElementsOf(const std::string& svg) {
+  const auto counts = CountElements(svg);
+  EXPECT_TRUE(counts.ok()) << counts.status();
+  return counts.ok() ? *counts : std::map<std::string, int>();
+}
+
+TEST(PosePictureTest, LinksAreWedgesAlongTheirAxes) {
+  PlanarChain chain;
+  chain.link_lengths_m = {1, 2};
+  const auto skeleton = BuilderOf(chain)->Build().value();
+  const Eigen::Vector3d target(1, 1, 0);
+  auto drawn = ElementsOf(PosePictureSvg(*skeleton, Eigen::Vector2d(0.3, 0.4),
+                                         {&target, 1}, "a & b"));
+  EXPECT_EQ(drawn["polygon.shade4"], 2);
+  EXPECT_EQ(drawn["circle.target"], 1);
+  // Seen along Z only.
+  EXPECT_EQ(drawn["rect.panel"], 1);
+}
+
+TEST(PosePictureTest, BodiesAreSeenTwice) {
+  const Playback playback = SamplePlayback(1);
+  auto drawn = ElementsOf(PosePictureSvg(
+      *playback.skeleton, playback.clip_poses.col(0), {}, "body"));
+  EXPECT_EQ(drawn["rect.panel"], 2);
+  EXPECT_GT(drawn["polygon.shade4"], 2 * 10);
+}
+
+TEST(WorkspacePictureTest, AMapIsSeenAlongEachAxis) {
+  WorkspaceMap map;
+  map.voxel_size_m = 0.1;
+  map.size = {3, 2, 2};
+  map.sample_count = 7;
+  map.voxels = {{0, 1, 0.1}, {1, 2, 0.1}, {11, 4, 1}};
+  auto drawn = ElementsOf(WorkspacePictureSvg(map, "tip"));
+  EXPECT_EQ(drawn["rect.panel"], 3);
+  // The best one is dark in each view, and once in the key; voxels 0 and 1 are
+  // one stretch where both are seen.
+  EXPECT_EQ(drawn["rect.shade6"], 3 + 1);
+  EXPECT_EQ(drawn["rect.shade1"], 3 + 1);
+  map.size = {3, 2, 1};
+  map.voxels.pop_back();
+  EXPECT_EQ(ElementsOf(WorkspacePictureSvg(map, "tip"))["rect.panel"], 1);
+}
+
+TEST(WorkspacePictureTest, ARingHasTwoCircles) {
+  PlanarAnnulus annulus;
+  annulus.inner_radius_m = 1;
+  annulus.outer_radius_m = 3;
+  auto drawn = ElementsOf(WorkspacePictureSvg(annulus, "tip"));
+  EXPECT_EQ(drawn["circle.shade3"], 1);
+  EXPECT_EQ(drawn["circle.panel"], 1);
+}
+
+TEST(TwoLinkPictureTest, TheOtherSolutionIsPale) {
+  v1::PlanarTwoLink limb;
+  limb.mutable_target()->set_x(1);
+  v1::SolveTwoLinkResponse response;
+  response.set_max_reach_m(2);
+  response.set_best(1);
+  for (double y : {-1, 1}) {
+    v1::TwoLinkSolution& solution = *response.add_solutions();
+    solution.mutable_world_mid()->set_y(y);
+    solution.mutable_world_tip()->set_x(1);
+  }
+  auto drawn = ElementsOf(TwoLinkPictureSvg(limb, response));
+  EXPECT_EQ(drawn["line.ghost"], 2);
+  EXPECT_EQ(drawn["line.bone"], 2);
+  EXPECT_EQ(drawn["circle.target"], 1);
 }
 
 }  // namespace
