@@ -1,0 +1,288 @@
+#include "gelenk/skin/layered_skin.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace gelenk {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+absl::Status CheckBinding(const VolumeRig& rig, const TriangleMesh& mesh,
+                          const SkinBinding& binding) {
+  if (binding.vertices.size() != mesh.positions.size()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("binding: is of ", binding.vertices.size(),
+                     " vertices, the mesh has ", mesh.positions.size()));
+  }
+  for (size_t v = 0; v < binding.vertices.size(); ++v) {
+    const VertexBinding& vertex = binding.vertices[v];
+    bool fits = vertex.volume >= 0 && vertex.volume < rig.volume_count() &&
+                vertex.first_share >= 0 && vertex.share_count >= 0 &&
+                vertex.first_share + vertex.share_count <=
+                    static_cast<int>(binding.shares.size());
+    if (fits) {
+      for (const BlendShare& share : binding.SharesOf(static_cast<int>(v))) {
+        fits = fits && share.volume >= 0 && share.volume < rig.volume_count();
+      }
+    }
+    if (!fits) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "binding.vertices[", v, "]: refers to what the rig does not have"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const LayeredSkin>> LayeredSkin::Create(
+    std::shared_ptr<const VolumeRig> rig, const TriangleMesh& mesh,
+    std::shared_ptr<const SkinBinding> binding) {
+  if (absl::Status status = CheckMesh(mesh); !status.ok()) return status;
+  if (absl::Status status = CheckBinding(*rig, mesh, *binding); !status.ok()) {
+    return status;
+  }
+  Slots slots = SortByVolume(*rig, *binding);
+  return std::shared_ptr<const LayeredSkin>(new LayeredSkin(
+      std::move(rig), mesh, std::move(binding), std::move(slots)));
+}
+
+absl::StatusOr<std::shared_ptr<const LayeredSkin>> LayeredSkin::Bind(
+    const VolumeRig& rig, const TriangleMesh& mesh) {
+  if (absl::Status status = CheckMesh(mesh); !status.ok()) return status;
+  std::shared_ptr<const VolumeRig> fitted = FitSections(rig, mesh);
+  absl::StatusOr<SkinBinding> binding = BindMesh(*fitted, mesh);
+  if (!binding.ok()) return binding.status();
+  return Create(std::move(fitted), mesh,
+                std::make_shared<const SkinBinding>(*std::move(binding)));
+}
+
+absl::StatusOr<std::shared_ptr<const LayeredSkin>> LayeredSkin::WithMuscles(
+    const SkinMuscles& muscles) const {
+  absl::StatusOr<std::shared_ptr<const VolumeRig>> rig =
+      rig_->WithMuscles(muscles);
+  if (!rig.ok()) return rig.status();
+  // A mitre changes the volumes of a bent rest: bind again.
+  absl::StatusOr<SkinBinding> binding =
+      BindMesh(**rig, mesh_, binding_->assignments);
+  if (!binding.ok()) return binding.status();
+  return Create(*std::move(rig), mesh_,
+                std::make_shared<const SkinBinding>(*std::move(binding)));
+}
+
+LayeredSkin::LayeredSkin(std::shared_ptr<const VolumeRig> rig,
+                         TriangleMesh mesh,
+                         std::shared_ptr<const SkinBinding> binding,
+                         Slots slots)
+    : Skin(rig->shared_skeleton(), std::move(slots.of_vertices),
+           slots.block_count, mesh.triangles, mesh.positions,
+           rig->rest_positions()),
+      rig_(std::move(rig)),
+      mesh_(std::move(mesh)),
+      binding_(std::move(binding)),
+      normals_(VertexNormals(mesh_)),
+      runs_(std::move(slots.runs)) {
+  FillBlocks();
+}
+
+LayeredSkin::Slots LayeredSkin::SortByVolume(const VolumeRig& rig,
+                                             const SkinBinding& binding) {
+  std::vector<int> next(rig.volume_count(), 0);
+  for (const VertexBinding& vertex : binding.vertices) ++next[vertex.volume];
+  Slots slots;
+  for (int volume = 0; volume < rig.volume_count(); ++volume) {
+    const int blocks = BlocksFor(next[volume]);
+    next[volume] = slots.block_count * kVerticesPerBlock;
+    if (blocks == 0) continue;
+    slots.runs.push_back(
+        {volume, slots.block_count, slots.block_count + blocks});
+    slots.block_count += blocks;
+  }
+  for (const VertexBinding& vertex : binding.vertices) {
+    slots.of_vertices.push_back(next[vertex.volume]++);
+  }
+  return slots;
+}
+
+void LayeredSkin::FillBlocks() {
+  vertices_.Resize(block_count());
+  // Padding: a point of the volume, with a normal.
+  for (int slot = 0; slot < block_count() * kVerticesPerBlock; ++slot) {
+    vertices_.Set(slot, Eigen::Vector3f::Zero(), Eigen::Vector3f::UnitY());
+  }
+  for (int v = 0; v < vertex_count(); ++v) {
+    const VertexBinding& vertex = binding_->vertices[v];
+    const Matrix3d jacobian =
+        rig_->rest().volume(vertex.volume).Evaluate(vertex.at).Jacobian();
+    const Vector3d normal = jacobian.transpose() * normals_[v];
+    vertices_.Set(slots()[v],
+                  Vector3d(vertex.at.u, vertex.at.s, vertex.at.t).cast<float>(),
+                  normal.cast<float>());
+    if (vertex.share_count > 0) AddShared(v);
+  }
+}
+
+void LayeredSkin::AddShared(int v) {
+  const VertexBinding& vertex = binding_->vertices[v];
+  shared_.push_back(
+      {v, slots()[v], static_cast<int>(parts_.size()), vertex.share_count + 1});
+  const Vector3d tangents[2] = {
+      normals_[v].unitOrthogonal(),
+      normals_[v].cross(normals_[v].unitOrthogonal())};
+  const auto add = [&](int volume, const VolumeCoordinates& at, double share,
+                       const Vector3d& gradient) {
+    const Matrix3d coordinates_from_point =
+        rig_->rest().volume(volume).Evaluate(at).Jacobian().inverse();
+    VolumeShare part = {volume, at, share, {}, {}};
+    for (int k = 0; k < 2; ++k) {
+      part.coordinate_slopes[k] = coordinates_from_point * tangents[k];
+      part.share_slopes[k] = gradient.dot(tangents[k]);
+    }
+    parts_.push_back(part);
+  };
+  double rest = 1;
+  Vector3d rest_gradient = Vector3d::Zero();
+  for (const BlendShare& share : binding_->SharesOf(v)) {
+    add(share.volume, share.at, share.share, share.gradient);
+    rest -= share.share;
+    rest_gradient -= share.gradient;
+  }
+  add(vertex.volume, vertex.at, rest, rest_gradient);
+}
+
+void LayeredSkin::DeformShared(const SharedVertex& shared,
+                               const VolumeFrame& frame, Vector3d* position,
+                               Vector3d* normal) const {
+  *position = Vector3d::Zero();
+  Vector3d tangents[2] = {Vector3d::Zero(), Vector3d::Zero()};
+  for (int i = 0; i < shared.part_count; ++i) {
+    const VolumeShare& part = parts_[shared.first_part + i];
+    const VolumePoint point = frame.volume(part.volume).Evaluate(part.at);
+    *position += part.share * point.position;
+    for (int k = 0; k < 2; ++k) {
+      tangents[k] +=
+          part.share * (point.Jacobian() * part.coordinate_slopes[k]) +
+          part.share_slopes[k] * point.position;
+    }
+  }
+  *normal = tangents[0].cross(tangents[1]).normalized();
+}
+
+void LayeredSkin::FillCoefficients(const VolumeFrame& frame,
+                                   SkinWorkspace& workspace) const {
+  workspace.coefficients.resize(rig_->volume_count());
+  for (const kernel::VolumeRun& run : runs_) {
+    for (int power = 0; power < 4; ++power) {
+      const Matrix3d& columns = frame.volume(run.volume).coefficient(power);
+      float* to = workspace.coefficients[run.volume].powers[power];
+      for (int i = 0; i < 9; ++i) {
+        to[i] = static_cast<float>(columns.data()[i]);
+      }
+    }
+  }
+}
+
+kernel::DeformLayout LayeredSkin::LayoutOf(
+    const SkinWorkspace& workspace) const {
+  return {workspace.coefficients.data(), runs_.data(),
+          static_cast<int>(runs_.size()), vertices_.data()};
+}
+
+void LayeredSkin::Deform(const ConstVectorView& positions,
+                         const RigidTransform& world_from_skeleton,
+                         SkinWorkspace& workspace, VertexBlocks& blocks) const {
+  rig_->Evaluate(positions, world_from_skeleton, workspace.frame);
+  DeformIn(workspace.frame, workspace, blocks);
+}
+
+void LayeredSkin::DeformIn(const VolumeFrame& frame, SkinWorkspace& workspace,
+                           VertexBlocks& blocks) const {
+  FillCoefficients(frame, workspace);
+  blocks.Resize(block_count());
+  functions().deform(LayoutOf(workspace), blocks.data());
+  for (const SharedVertex& shared : shared_) {
+    Vector3d position, normal;
+    DeformShared(shared, frame, &position, &normal);
+    blocks.Set(shared.slot, position.cast<float>(), normal.cast<float>());
+  }
+}
+
+void LayeredSkin::DeformQuantized(const ConstVectorView& positions,
+                                  const RigidTransform& world_from_skeleton,
+                                  SkinWorkspace& workspace,
+                                  QuantizedBlocks& blocks) const {
+  rig_->Evaluate(positions, world_from_skeleton, workspace.frame);
+  blocks.box = BoxAt(positions, world_from_skeleton);
+  DeformQuantizedIn(workspace.frame, workspace, blocks);
+}
+
+void LayeredSkin::DeformQuantizedIn(const VolumeFrame& frame,
+                                    SkinWorkspace& workspace,
+                                    QuantizedBlocks& blocks) const {
+  FillCoefficients(frame, workspace);
+  blocks.Resize(block_count());
+  const kernel::QuantizationGrid grid = GridOf(blocks.box);
+  functions().deform_quantized(LayoutOf(workspace), grid, blocks.data());
+  if (shared_.empty()) return;
+  // Sixteen at a time, and each to its place.
+  workspace.blocks.Resize(1);
+  QuantizedBlocks& sixteen = workspace.quantized;
+  sixteen.Resize(1);
+  for (size_t first = 0; first < shared_.size(); first += kVerticesPerBlock) {
+    const size_t end = std::min(first + kVerticesPerBlock, shared_.size());
+    for (size_t i = first; i < end; ++i) {
+      Vector3d position, normal;
+      DeformShared(shared_[i], frame, &position, &normal);
+      workspace.blocks.Set(static_cast<int>(i - first), position.cast<float>(),
+                           normal.cast<float>());
+    }
+    functions().quantize(workspace.blocks.data(), 1, grid, sixteen.data());
+    for (size_t i = first; i < end; ++i) {
+      blocks.CopySlot(sixteen, static_cast<int>(i - first), shared_[i].slot);
+    }
+  }
+}
+
+void LayeredSkin::DeformExactly(const VolumeFrame& frame,
+                                std::vector<Vector3d>& positions,
+                                std::vector<Vector3d>* normals) const {
+  positions.resize(vertex_count());
+  if (normals) normals->resize(vertex_count());
+  for (int v = 0; v < vertex_count(); ++v) {
+    const VertexBinding& vertex = binding_->vertices[v];
+    const VolumePoint point = frame.volume(vertex.volume).Evaluate(vertex.at);
+    positions[v] = point.position;
+    if (normals == nullptr) continue;
+    const Matrix3d rest =
+        rig_->rest().volume(vertex.volume).Evaluate(vertex.at).Jacobian();
+    (*normals)[v] =
+        DeformedNormal(point, rest.transpose() * normals_[v]).normalized();
+  }
+  for (const SharedVertex& shared : shared_) {
+    Vector3d normal;
+    DeformShared(shared, frame, &positions[shared.vertex], &normal);
+    if (normals) (*normals)[shared.vertex] = normal;
+  }
+}
+
+size_t LayeredSkin::ByteSize() const {
+  return Skin::ByteSize() + sizeof(*this) +
+         mesh_.positions.size() * sizeof(Vector3d) * 3 +
+         mesh_.triangles.size() * sizeof(Triangle) +
+         binding_->vertices.size() * sizeof(VertexBinding) +
+         binding_->shares.size() * sizeof(BlendShare) +
+         binding_->candidates.size() * sizeof(BindingCandidate) +
+         binding_->assignments.size() * sizeof(VertexAssignment) +
+         static_cast<size_t>(block_count()) * kernel::kBlockFloats *
+             sizeof(float) +
+         shared_.size() * sizeof(SharedVertex) +
+         parts_.size() * sizeof(VolumeShare);
+}
+
+}  // namespace gelenk
