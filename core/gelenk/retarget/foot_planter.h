@@ -1,0 +1,107 @@
+// Keeps one foot where it stands, without look-ahead.
+//
+// When a point of the foot comes into contact it is locked where the corrected
+// foot has it at that moment, so that nothing pops, and its height eases to
+// that of a planted point. One lock holds the point and lets the foot turn; two
+// hold the foot. What the locks have moved fades out when they are released.
+// Without locks the foot is lifted out of the ground, with one it is turned out
+// of it. The toe's tip is held the same way while the ball is.
+#ifndef GELENK_RETARGET_FOOT_PLANTER_H_
+#define GELENK_RETARGET_FOOT_PLANTER_H_
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+
+#include "gelenk/contact/contact_detector.h"
+#include "gelenk/contact/ground.h"
+#include "gelenk/retarget/body_model.h"
+
+namespace gelenk {
+
+// Canonical: of the foot's joint.
+struct FootPose {
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d ankle = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
+    return ankle + orientation * point;
+  }
+};
+
+// The shape of a foot and what it stands on. Keeps references.
+struct FootOnGround {
+  const FootShape& shape;
+  const std::array<double, kFootPointCount>& planted_heights;
+  const Ground& ground;
+
+  // Of a planted `point` (kHeel, kBall, kTip) that is at `at`.
+  double PlantedHeight(int point, const Eigen::Vector3d& at) const {
+    return ground.HeightAt(at) + planted_heights[point];
+  }
+};
+
+// Moves a foot out of the ground: up, or about its heel or ball when `locked`
+// is one of them.
+inline constexpr int kNothingLocked = -1;
+void LiftFoot(const FootOnGround& foot, int locked, FootPose& pose);
+
+// Turns the toe about `ball` so that its tip is not below the ground.
+Eigen::Quaterniond LiftToe(const FootOnGround& foot,
+                           const Eigen::Vector3d& ball,
+                           const Eigen::Quaterniond& toe);
+
+class FootPlanter {
+ public:
+  // `size` as BodyModel::Size of the target. All referred to must outlive it.
+  FootPlanter(const FootOnGround& foot, double size)
+      : foot_(foot), size_(size) {}
+
+  void Reset() {
+    locks_ = {};
+    moved_.setZero();
+    turned_.setIdentity();
+    toe_turned_.setIdentity();
+  }
+
+  // Where the foot is to be, given where it would be. Allocates nothing.
+  FootPose Plant(const FootPose& goal,
+                 const std::array<Contact, kFootPointCount>& contacts,
+                 double dt_s);
+
+  // The toe of the foot that Plant gave last: `wanted` is its orientation in
+  // the copied pose.
+  Eigen::Quaterniond PlantToe(
+      const FootPose& planted, const Eigen::Quaterniond& wanted,
+      const std::array<Contact, kFootPointCount>& contacts, double dt_s);
+
+ private:
+  struct Lock {
+    bool is_on = false;
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    double age_s = 0;
+  };
+
+  const Eigen::Vector3d& PointOf(int point) const {
+    return point == kHeel ? foot_.shape.heel : foot_.shape.ball;
+  }
+  void UpdateLock(int point, bool in_contact, const FootPose& goal,
+                  const FootPose& pose, double dt_s);
+  // The foot on both locks.
+  void StandOnBoth(FootPose& pose);
+  // Turns `toe` onto the lock of the tip.
+  void HoldTip(const Eigen::Vector3d& ball, bool in_contact, double dt_s,
+               Eigen::Quaterniond& toe);
+
+  FootOnGround foot_;
+  double size_;
+  std::array<Lock, kFootPointCount> locks_;
+  // What the locks have moved: ankle and orientation beside those wanted.
+  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond turned_ = Eigen::Quaterniond::Identity();
+  Eigen::Quaterniond toe_turned_ = Eigen::Quaterniond::Identity();
+};
+
+}  // namespace gelenk
+
+#endif  // GELENK_RETARGET_FOOT_PLANTER_H_

@@ -1,0 +1,125 @@
+#include "gelenk/retarget/joint_map.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "gelenk/retarget/humanoid.h"
+#include "tests/testing/rig_family.h"
+#include "tests/testing/status_matchers.h"
+
+namespace gelenk {
+namespace {
+
+using testing::BodyOf;
+using testing::RigFamilies;
+using testing::RigFamily;
+
+std::string JointOf(const JointMap& map, const Skeleton& skeleton,
+                    BodyRole role) {
+  const int joint = map.joint(role);
+  return joint < 0 ? "" : skeleton.joint(joint).id;
+}
+
+void ExpectSide(const JointMap& map, const Skeleton& skeleton,
+                const std::array<std::string, 8>& names, int side) {
+  const ArmRoles& arm = kArmRoles[side];
+  const LegRoles& leg = kLegRoles[side];
+  const std::array<BodyRole, 8> roles = {
+      arm.clavicle, arm.upper_arm, arm.forearm, arm.hand,
+      leg.thigh,    leg.shin,      leg.foot,    leg.toe};
+  for (size_t i = 0; i < roles.size(); ++i) {
+    EXPECT_EQ(JointOf(map, skeleton, roles[i]), names[i])
+        << BodyRoleName(roles[i]);
+  }
+}
+
+TEST(JointMapTest, FindsEveryRoleOfEveryFamily) {
+  for (const RigFamily& family : RigFamilies()) {
+    SCOPED_TRACE(family.family);
+    const auto skeleton = BodyOf(family);
+    const auto map = ProposeJointMap(*skeleton);
+    ASSERT_TRUE(map.ok()) << map.status();
+    EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kPelvis), family.pelvis);
+    EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kChest), family.spine.back());
+    EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kNeck), family.neck.front());
+    EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kHead), family.head);
+    ExpectSide(*map, *skeleton, family.left, kLeft);
+    ExpectSide(*map, *skeleton, family.right, kRight);
+    EXPECT_EQ(map->spine.size(), family.spine.size());
+    EXPECT_GT(map->Confidence(), family.family == "nameless" ? 0.5 : 0.85);
+    if (family.family == "nameless") {
+      EXPECT_LT(map->Confidence(), 0.75);
+    }
+  }
+}
+
+TEST(JointMapTest, OverridesWinAndMayTakeRolesAway) {
+  const auto skeleton = MakeHumanoid();
+  const auto map = ProposeJointMap(
+      *skeleton, {{"chest", "chest"}, {"left_toe", ""}, {"head", "neck"}});
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kChest), "chest");
+  EXPECT_EQ(map->roles[IndexOf(BodyRole::kChest)].evidence,
+            RoleEvidence::kOverride);
+  EXPECT_FALSE(map->Has(BodyRole::kLeftToe));
+  EXPECT_TRUE(map->Has(BodyRole::kRightToe));
+  EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kHead), "neck");
+  EXPECT_THAT(map->notes,
+              ::testing::Contains(::testing::HasSubstr("left_toe")));
+}
+
+TEST(JointMapTest, ListsEveryBadOverride) {
+  const absl::Status status =
+      ProposeJointMap(*MakeHumanoid(), {{"tail", "head"},
+                                        {"head", "horn"},
+                                        {"neck", "neck"},
+                                        {"neck", "head"},
+                                        {"chest", "neck"}})
+          .status();
+  for (const char* words :
+       {"overrides[0].role", "overrides[1].joint_id", "overrides[3].role",
+        "overrides[4].joint_id", "tail", "horn"}) {
+    EXPECT_THAT(status,
+                testing::Fails(absl::StatusCode::kInvalidArgument, words));
+  }
+}
+
+TEST(JointMapTest, AMapComesBackFromItsEntries) {
+  const auto skeleton = BodyOf(RigFamilies()[0]);
+  const auto map = ProposeJointMap(*skeleton);
+  ASSERT_TRUE(map.ok());
+  std::vector<JointMapOverride> overrides;
+  for (const JointMapEntry& entry : EntriesOf(*map, *skeleton)) {
+    overrides.push_back({entry.role, entry.joint_id});
+  }
+  const auto again = ProposeJointMap(*skeleton, overrides);
+  ASSERT_TRUE(again.ok()) << again.status();
+  for (int i = 0; i < kBodyRoleCount; ++i) {
+    EXPECT_EQ(again->roles[i].joint, map->roles[i].joint);
+  }
+  EXPECT_EQ(again->spine, map->spine);
+  EXPECT_EQ(again->neck, map->neck);
+}
+
+TEST(JointMapTest, AHumanoidsOwnWordIsTakenExactly) {
+  // A VRM file may name what the joints' names deny.
+  const auto skeleton = BodyOf(RigFamilies().back());
+  const std::vector<std::pair<std::string, std::string>> bones = {
+      {"hips", "j0"},       {"chest", "j2"},          {"upperChest", "j3"},
+      {"head", "j5"},       {"leftUpperArm", "j21"},  {"leftLowerArm", "j22"},
+      {"leftHand", "j23"},  {"leftUpperLeg", "j14"},  {"leftLowerLeg", "j15"},
+      {"leftFoot", "j16"},  {"rightUpperLeg", "j24"}, {"rightLowerLeg", "j25"},
+      {"rightFoot", "j26"}, {"leftEye", "j4"}};
+  const auto map = ProposeJointMap(*skeleton, OverridesOfHumanoid(bones));
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kChest), "j3");
+  EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kLeftUpperArm), "j21");
+  EXPECT_FALSE(map->Has(BodyRole::kRightHand));
+  EXPECT_FALSE(map->Has(BodyRole::kLeftToe));
+  EXPECT_FALSE(map->HasArm(kRight));
+}
+
+}  // namespace
+}  // namespace gelenk
