@@ -19,6 +19,8 @@ using Eigen::Vector3d;
 constexpr absl::string_view kNames[] = {"cylinder", "arm", "leg", "humanoid"};
 constexpr int kLeastVertices = 100;
 constexpr int kMostVertices = 200000;
+// Of the thickest limb's radius.
+constexpr double kCoarseCell = 0.25;
 
 // A limb at rest: world frame, m. Capsules of one joint may be several.
 struct Limb {
@@ -78,18 +80,18 @@ class BodyBuilder {
     if (!skeleton.ok()) return skeleton.status();
     SkinShape shape;
     shape.skeleton = *std::move(skeleton);
-    // A cell has about one vertex: the area tells how large it is.
-    double area = 0;
+    // A cell has about one vertex, so the number goes with the square of its
+    // size: a coarse mesh tells the factor.
+    double cell = 0;
     for (const Capsule& capsule : capsules_) {
-      area += std::numbers::pi *
-              (capsule.start_radius_m + capsule.end_radius_m) *
-              ((capsule.end - capsule.start).norm() + capsule.start_radius_m +
-               capsule.end_radius_m);
+      cell = std::max({cell, capsule.start_radius_m, capsule.end_radius_m});
     }
-    // Capsules overlap, and a surface goes askew through its cells.
-    constexpr double kVerticesPerCellArea = 1.05;
-    const double cell = std::sqrt(kVerticesPerCellArea * area / vertex_count);
+    cell *= kCoarseCell;
     absl::StatusOr<TriangleMesh> mesh = MeshAround(capsules_, cell, blend_m);
+    if (!mesh.ok()) return mesh.status();
+    cell *=
+        std::sqrt(mesh->positions.size() / static_cast<double>(vertex_count));
+    mesh = MeshAround(capsules_, cell, blend_m);
     if (!mesh.ok()) return mesh.status();
     shape.mesh = *std::move(mesh);
     for (const Vector3d& position : shape.mesh.positions) {

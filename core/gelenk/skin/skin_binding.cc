@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <queue>
 #include <utility>
 
@@ -21,11 +22,9 @@ constexpr double kFacingPenalty = 4;
 // Sections reach a little beyond the surface; wider ones take in the
 // neighbours'.
 constexpr double kSectionMargin = 1.15;
-// Of the distances from a bone: those beyond are of other limbs.
+// Of the surface's distances from a bone: where a limb branches off, what comes
+// first is another limb's.
 constexpr double kSectionQuantile = 0.9;
-// A bone without skin keeps this much of its section, so that it takes no one
-// else's.
-constexpr int kFewVertices = 8;
 
 class MeshBinder {
  public:
@@ -180,6 +179,88 @@ class MeshBinder {
   SkinBinding binding_;
 };
 
+// Looks from the bone outwards, in every direction: what comes first is the
+// limb's own surface, whatever lies beyond.
+class SectionFitter {
+ public:
+  SectionFitter(const VolumeRig& rig, int link)
+      : rotation_(rig.rest().rotation(link)),
+        origin_(rig.rest().origin(link)),
+        link_(rig.link(link)) {
+    nearest_.fill(Eigen::Vector2d::Zero());
+    distances_.fill(std::numeric_limits<double>::infinity());
+  }
+
+  // The section as it is where there is too little to see.
+  Eigen::Vector2d Fit(const TriangleMesh& mesh,
+                      const std::vector<Vector3d>& normals) {
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+      Look(mesh.positions[v], normals[v]);
+    }
+    std::vector<Eigen::Vector2d> seen;
+    for (int bin = 0; bin < kBins; ++bin) {
+      if (std::isfinite(distances_[bin])) seen.push_back(nearest_[bin]);
+    }
+    if (static_cast<int>(seen.size()) < kFewDirections) {
+      return link_.half_extents_m;
+    }
+    // How flat the section is, then how large: limbs taper.
+    Eigen::Vector2d shape;
+    for (int k = 0; k < 2; ++k) {
+      shape[k] = Quantile(
+          seen, [k](const Eigen::Vector2d& p) { return std::abs(p[k]); });
+    }
+    if (!(shape.minCoeff() > 0)) return link_.half_extents_m;
+    const double size = Quantile(seen, [&](const Eigen::Vector2d& p) {
+      return p.cwiseQuotient(shape).norm();
+    });
+    return kSectionMargin * size * shape;
+  }
+
+ private:
+  static constexpr int kSlices = 8;
+  static constexpr int kDirections = 16;
+  static constexpr int kBins = kSlices * kDirections;
+  static constexpr int kFewDirections = kBins / 4;
+
+  template <typename Measure>
+  static double Quantile(const std::vector<Eigen::Vector2d>& points,
+                         const Measure& measure) {
+    std::vector<double> values;
+    for (const Eigen::Vector2d& point : points) {
+      values.push_back(measure(point));
+    }
+    const auto at =
+        values.begin() + static_cast<int>(kSectionQuantile * values.size());
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  }
+
+  void Look(const Vector3d& point, const Vector3d& normal) {
+    const Vector3d local = rotation_.transpose() * (point - origin_);
+    const double along = local.x() / link_.length_m;
+    if (!(along >= 0 && along < 1)) return;
+    const Eigen::Vector2d across = local.tail<2>();
+    const double distance = across.norm();
+    const Eigen::Vector2d outwards = (rotation_.transpose() * normal).tail<2>();
+    if (outwards.dot(across) < kFacingCosine * distance) return;
+    const double turn =
+        std::atan2(across[1], across[0]) / (2 * std::numbers::pi) + 0.5;
+    const int direction =
+        std::min(static_cast<int>(kDirections * turn), kDirections - 1);
+    const int bin = kDirections * static_cast<int>(kSlices * along) + direction;
+    if (distance >= distances_[bin]) return;
+    distances_[bin] = distance;
+    nearest_[bin] = across;
+  }
+
+  const Eigen::Matrix3d& rotation_;
+  const Vector3d& origin_;
+  const SkinLink& link_;
+  std::array<Eigen::Vector2d, kBins> nearest_;
+  std::array<double, kBins> distances_;
+};
+
 bool AreNeighbours(const VolumeRig& rig, int a, int b) {
   return a == b || rig.link(a).parent == b || rig.link(b).parent == a;
 }
@@ -234,29 +315,10 @@ absl::StatusOr<SkinBinding> BindMesh(
 
 std::shared_ptr<const VolumeRig> FitSections(const VolumeRig& rig,
                                              const TriangleMesh& mesh) {
-  const VertexPlacer placer(rig);
-  std::vector<std::vector<double>> distances[2];
-  for (auto& of_links : distances) of_links.resize(rig.link_count());
-  for (const Vector3d& point : mesh.positions) {
-    const int link = placer.NearestLink(point);
-    const Vector3d local = rig.rest().rotation(link).transpose() *
-                           (point - rig.rest().origin(link));
-    for (int k = 0; k < 2; ++k) {
-      distances[k][link].push_back(std::abs(local[1 + k]));
-    }
-  }
+  const std::vector<Vector3d> normals = VertexNormals(mesh);
   std::vector<Eigen::Vector2d> half_extents;
   for (int i = 0; i < rig.link_count(); ++i) {
-    Eigen::Vector2d fitted = rig.link(i).half_extents_m;
-    for (int k = 0; k < 2; ++k) {
-      std::vector<double>& values = distances[k][i];
-      if (static_cast<int>(values.size()) < kFewVertices) continue;
-      const auto at =
-          values.begin() + static_cast<int>(kSectionQuantile * values.size());
-      std::nth_element(values.begin(), at, values.end());
-      if (*at > 0) fitted[k] = kSectionMargin * *at;
-    }
-    half_extents.push_back(fitted);
+    half_extents.push_back(SectionFitter(rig, i).Fit(mesh, normals));
   }
   return rig.WithHalfExtents(half_extents);
 }

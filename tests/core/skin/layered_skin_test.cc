@@ -189,7 +189,9 @@ TEST_P(LayeredSkinTest, NormalsAreThoseOfTheDeformedSurface) {
                               .cross(moved[1][0][v] - moved[1][1][v]);
     if (!want.allFinite() || want.norm() < 0.1 * kStep * kStep) continue;
     ++compared;
-    EXPECT_LE((normals[v] - want.normalized()).norm(), 1e-4) << v;
+    // The map is C1: where its curvature jumps, differences are off by the step
+    // times that.
+    EXPECT_LE((normals[v] - want.normalized()).norm(), 1e-3) << v;
   }
   EXPECT_GT(compared, 0.9 * normals.size());
 }
