@@ -1,11 +1,7 @@
-// A warm solve takes no memory. This executable counts every malloc of the code
-// linked into it (Eigen's too, by the linker's --wrap) and every operator new.
+// A warm solve takes no memory.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <memory>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -14,72 +10,16 @@
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/kinematics/jacobian.h"
 #include "gelenk/kinematics/kinematic_tree.h"
+#include "tests/testing/allocation_count.h"
 #include "tests/testing/example_skeletons.h"
 #include "tests/testing/ik_targets.h"
 #include "tests/testing/random_pose.h"
 #include "tests/testing/random_skeleton.h"
 
-namespace {
-
-std::atomic<int> allocation_count = 0;
-
-}  // namespace
-
-// NOLINTBEGIN(readability-identifier-naming): the linker's names.
-extern "C" {
-void* __real_malloc(size_t size);
-void* __real_calloc(size_t count, size_t size);
-void* __real_realloc(void* memory, size_t size);
-void* __real_aligned_alloc(size_t alignment, size_t size);
-
-void* __wrap_malloc(size_t size) {
-  ++allocation_count;
-  return __real_malloc(size);
-}
-void* __wrap_calloc(size_t count, size_t size) {
-  ++allocation_count;
-  return __real_calloc(count, size);
-}
-void* __wrap_realloc(void* memory, size_t size) {
-  ++allocation_count;
-  return __real_realloc(memory, size);
-}
-void* __wrap_aligned_alloc(size_t alignment, size_t size) {
-  ++allocation_count;
-  return __real_aligned_alloc(alignment, size);
-}
-}
-// NOLINTEND(readability-identifier-naming)
-
-// Out of line, or the compiler pairs new with free and warns.
-[[gnu::noinline]] void* operator new(size_t size) {
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(size_t size, std::align_val_t alignment) {
-  const size_t step = static_cast<size_t>(alignment);
-  const size_t whole_steps = (size + step - 1) / step * step;
-  if (void* memory = std::aligned_alloc(step, whole_steps)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory,
-                                       std::align_val_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, size_t,
-                                       std::align_val_t) noexcept {
-  std::free(memory);
-}
-
 namespace gelenk {
 namespace {
 
+using ::gelenk::testing::AllocationCount;
 using ::gelenk::testing::EffectorPose;
 using ::gelenk::testing::PandaArm;
 using ::gelenk::testing::PoseGoalsAt;
@@ -135,20 +75,20 @@ int AllocationsOfWarmFrames(std::vector<Stream>& streams,
                             const SolverOptions& options) {
   LevenbergMarquardtSolver solver;
   for (Stream& stream : streams) SolveFrame(solver, stream, 0, options);
-  const int before = allocation_count;
+  const int before = AllocationCount();
   for (int frame = 1; frame < 20; ++frame) {
     for (Stream& stream : streams) SolveFrame(solver, stream, frame, options);
   }
-  return allocation_count - before;
+  return AllocationCount() - before;
 }
 
 TEST(SolverAllocationTest, TheCounterCounts) {
-  const int before = allocation_count;
+  const int before = AllocationCount();
   const auto number = std::make_unique<int>(7);
-  const int after_new = allocation_count;
+  const int after_new = AllocationCount();
   const Eigen::VectorXd vector = Eigen::VectorXd::Constant(100, *number);
   EXPECT_EQ(after_new - before, 1);
-  EXPECT_EQ(allocation_count - after_new, vector.sum() == 700 ? 1 : 0);
+  EXPECT_EQ(AllocationCount() - after_new, vector.sum() == 700 ? 1 : 0);
 }
 
 TEST(SolverAllocationTest, WarmFramesOfAnArm) {
@@ -169,11 +109,11 @@ TEST(SolverAllocationTest, WarmFramesWithRestarts) {
   for (int frame = 0; frame < 4; ++frame) {
     SolveFrame(solver, streams[0], frame, options);
   }
-  const int before = allocation_count;
+  const int before = AllocationCount();
   for (int frame = 4; frame < 20; ++frame) {
     SolveFrame(solver, streams[0], frame, options);
   }
-  EXPECT_EQ(allocation_count - before, 0);
+  EXPECT_EQ(AllocationCount() - before, 0);
 }
 
 // One thread serves many sessions in turn.
@@ -203,9 +143,9 @@ TEST(SolverAllocationTest, ABatchOfArmsTheSecondTime) {
   Eigen::MatrixXd positions = start.replicate(1, 200);
   solver.Solve(problem, targets, {}, SolveStart::kCold, positions, report);
   positions.colwise() = start;
-  const int before = allocation_count;
+  const int before = AllocationCount();
   solver.Solve(problem, targets, {}, SolveStart::kCold, positions, report);
-  EXPECT_EQ(allocation_count - before, 0);
+  EXPECT_EQ(AllocationCount() - before, 0);
 }
 
 // A chain with one position goal has a kernel of its own.
@@ -258,9 +198,9 @@ TEST(SolverAllocationTest, FabrikOnceItHasSeenTheChain) {
   SolveReport report;
   solver.Solve(problem, {}, positions, report);
   positions = start;
-  const int before = allocation_count;
+  const int before = AllocationCount();
   solver.Solve(problem, {}, positions, report);
-  EXPECT_EQ(allocation_count - before, 0);
+  EXPECT_EQ(AllocationCount() - before, 0);
 }
 
 TEST(SolverAllocationTest, ForwardKinematicsAndJacobian) {
@@ -273,10 +213,10 @@ TEST(SolverAllocationTest, ForwardKinematicsAndJacobian) {
   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian;
   ForwardKinematics(*skeleton, pose, frames);
   ComputeJacobian(*skeleton, pose, frames, effector, jacobian);
-  const int before = allocation_count;
+  const int before = AllocationCount();
   ForwardKinematics(*skeleton, pose, frames);
   ComputeJacobian(*skeleton, pose, frames, effector, jacobian);
-  EXPECT_EQ(allocation_count - before, 0);
+  EXPECT_EQ(AllocationCount() - before, 0);
 }
 
 TEST(SolverAllocationTest, KinematicTree) {
@@ -286,9 +226,9 @@ TEST(SolverAllocationTest, KinematicTree) {
   const KinematicTree tree(*skeleton);
   KinematicFrames frames;
   tree.Evaluate(pose, frames);
-  const int before = allocation_count;
+  const int before = AllocationCount();
   tree.Evaluate(pose, frames);
-  EXPECT_EQ(allocation_count - before, 0);
+  EXPECT_EQ(AllocationCount() - before, 0);
 }
 
 }  // namespace
