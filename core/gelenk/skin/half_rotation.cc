@@ -18,21 +18,27 @@ constexpr double kNoRotation = 1e-12;
 }  // namespace
 
 Quaterniond HalfSwingAndTwist(const Quaterniond& rotation) {
-  const Quaterniond q = rotation.w() < 0
-                            ? Quaterniond(Eigen::Vector4d(-rotation.coeffs()))
-                            : rotation;
-  const double swing_cosine = std::sqrt(q.w() * q.w() + q.x() * q.x());
-  if (swing_cosine < kNoDirection) {
+  const double sign = rotation.w() < 0 ? -1 : 1;
+  const double w = sign * rotation.w(), x = sign * rotation.x();
+  const double y = sign * rotation.y(), z = sign * rotation.z();
+  // The twist is (w, x, 0, 0) / n, the swing n + what is across X; the half of
+  // a unit quaternion q is 1 + q, normalised.
+  const double n = std::sqrt(w * w + x * x);
+  if (n < kNoDirection) {
     // Half a turn of X: there is no twist to tell, and half is a right angle.
-    return Quaterniond(1, 0, q.y(), q.z()).normalized();
+    return Quaterniond(1, 0, y, z).normalized();
   }
-  const Quaterniond twist(q.w() / swing_cosine, q.x() / swing_cosine, 0, 0);
-  const Quaterniond swing = q * twist.conjugate();
-  const Quaterniond half_swing =
-      Quaterniond(1 + swing.w(), 0, swing.y(), swing.z()).normalized();
-  const Quaterniond half_twist =
-      Quaterniond(1 + twist.w(), twist.x(), 0, 0).normalized();
-  return half_swing * half_twist;
+  const double swing_norm = std::sqrt(2 * (1 + n));
+  const double swing_w = 0.5 * swing_norm;
+  const double swing_scale = 1 / (n * swing_norm);
+  const double swing_y = (y * w - z * x) * swing_scale;
+  const double swing_z = (z * w + y * x) * swing_scale;
+  const double twist_scale = 1 / std::sqrt(2 * n * (n + w));
+  const double twist_w = (n + w) * twist_scale;
+  const double twist_x = x * twist_scale;
+  return Quaterniond(swing_w * twist_w, swing_w * twist_x,
+                     swing_y * twist_w + swing_z * twist_x,
+                     swing_z * twist_w - swing_y * twist_x);
 }
 
 Quaterniond HalfHinge(const Quaterniond& rest, const Vector3d& axis,

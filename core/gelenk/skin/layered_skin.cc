@@ -188,7 +188,7 @@ void LayeredSkin::FillCoefficients(const VolumeFrame& frame,
   }
 }
 
-kernel::DeformLayout LayeredSkin::LayoutOf(
+kernel::DeformLayout LayeredSkin::LayoutIn(
     const SkinWorkspace& workspace) const {
   return {workspace.coefficients.data(), runs_.data(),
           static_cast<int>(runs_.size()), vertices_.data()};
@@ -205,7 +205,7 @@ void LayeredSkin::DeformIn(const VolumeFrame& frame, SkinWorkspace& workspace,
                            VertexBlocks& blocks) const {
   FillCoefficients(frame, workspace);
   blocks.Resize(block_count());
-  functions().deform(LayoutOf(workspace), blocks.data());
+  functions().deform(LayoutIn(workspace), blocks.data());
   for (const SharedVertex& shared : shared_) {
     Vector3d position, normal;
     DeformShared(shared, frame, &position, &normal);
@@ -228,7 +228,7 @@ void LayeredSkin::DeformQuantizedIn(const VolumeFrame& frame,
   FillCoefficients(frame, workspace);
   blocks.Resize(block_count());
   const kernel::QuantizationGrid grid = GridOf(blocks.box);
-  functions().deform_quantized(LayoutOf(workspace), grid, blocks.data());
+  functions().deform_quantized(LayoutIn(workspace), grid, blocks.data());
   if (shared_.empty()) return;
   // Sixteen at a time, and each to its place.
   workspace.blocks.Resize(1);

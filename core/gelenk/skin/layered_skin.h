@@ -54,6 +54,9 @@ class LayeredSkin : public Skin {
   void DeformQuantizedIn(const VolumeFrame& frame, SkinWorkspace& workspace,
                          QuantizedBlocks& blocks) const;  // in blocks.box
 
+  // What the kernels work on, after Deform into `workspace`.
+  kernel::DeformLayout LayoutIn(const SkinWorkspace& workspace) const;
+
   // In double precision, one by one: what the kernel is measured against, and
   // what wants no rounding. `normals` may be null.
   void DeformExactly(const VolumeFrame& frame,
@@ -95,7 +98,6 @@ class LayeredSkin : public Skin {
                     Eigen::Vector3d* position, Eigen::Vector3d* normal) const;
   void FillCoefficients(const VolumeFrame& frame,
                         SkinWorkspace& workspace) const;
-  kernel::DeformLayout LayoutOf(const SkinWorkspace& workspace) const;
 
   std::shared_ptr<const VolumeRig> rig_;
   TriangleMesh mesh_;

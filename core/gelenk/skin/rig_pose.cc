@@ -118,8 +118,7 @@ class RigPose {
   void PlaceFrame(int i) {
     const SkinLink& link = rig_.links_[i];
     const auto joint = frame_.kinematics_.rotation(link.joint);
-    frame_.rotations_[i] =
-        joint * link.joint_from_link.rotation.toRotationMatrix();
+    frame_.rotations_[i] = joint * rig_.joints_[i].joint_from_link;
     frame_.origins_[i] = frame_.kinematics_.origin(link.joint) +
                          joint * link.joint_from_link.translation;
     if (link.parent < 0) {
@@ -138,6 +137,12 @@ class RigPose {
           ScalarPosition(*rig_.skeleton_, positions_, motion.hinge);
       return HalfHinge(motion.parent_from_rest, motion.axis,
                        angle - motion.rest_angle_rad);
+    }
+    if (motion.ball >= 0) {
+      const int offset = rig_.skeleton_->span(motion.ball).quaternion_offset;
+      return HalfSwingAndTwist(motion.before *
+                               QuaternionXyzw(positions_.data() + offset) *
+                               motion.after);
     }
     const Matrix3d parent_from_link =
         frame_.rotations_[rig_.links_[i].parent].transpose() *

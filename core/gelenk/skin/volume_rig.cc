@@ -276,6 +276,7 @@ void VolumeRig::CompileJoints() {
     world_from_links[i] = world_from_joints[link.joint] * link.joint_from_link;
     start_spacings_[i] = end_spacings_[i] = kSpacing * link.length_m;
     JointMotion& motion = joints_[i];
+    motion.joint_from_link = link.joint_from_link.rotation.toRotationMatrix();
     motion.parent_from_rest.setIdentity();
     motion.parent_origin.setZero();
     motion.axis.setZero();
@@ -298,22 +299,37 @@ void VolumeRig::CompileJoints() {
         world_from_links[link.parent].Inverse() * world_from_links[i];
     motion.parent_from_rest = parent_from_link.rotation.normalized();
     motion.parent_origin = parent_from_link.translation;
-    int moving = 0;
-    for (int j = link.joint; j != parent.joint; j = skeleton_->span(j).parent) {
-      if (!IsMoving(skeleton_->joint(j))) continue;
-      ++moving;
-      motion.hinge = j;
-    }
-    if (moving != 1 ||
-        skeleton_->joint(motion.hinge).type != JointType::kRevolute) {
-      motion.hinge = -1;
-      continue;
-    }
-    motion.axis = world_from_links[i].rotation.conjugate() *
-                  (world_from_joints[motion.hinge].rotation *
-                   skeleton_->joint(motion.hinge).axis);
-    motion.rest_angle_rad =
-        ScalarPosition(*skeleton_, rest_positions_, motion.hinge);
+    CompileMotion(i, world_from_joints);
+  }
+}
+
+void VolumeRig::CompileMotion(int i, const WorldTransforms& world_from_joints) {
+  JointMotion& motion = joints_[i];
+  const SkinLink& link = links_[i];
+  int moving = -1;
+  for (int j = link.joint; j != links_[link.parent].joint;
+       j = skeleton_->span(j).parent) {
+    if (!IsMoving(skeleton_->joint(j))) continue;
+    if (moving >= 0) return;
+    moving = j;
+  }
+  if (moving < 0) return;
+  const Joint& joint = skeleton_->joint(moving);
+  const Quaterniond moved_from_link =
+      (world_from_joints[moving].rotation.conjugate() *
+       world_from_joints[link.joint].rotation * link.joint_from_link.rotation)
+          .normalized();
+  if (joint.type == JointType::kRevolute) {
+    motion.hinge = moving;
+    motion.axis = moved_from_link.conjugate() * joint.axis;
+    motion.rest_angle_rad = ScalarPosition(*skeleton_, rest_positions_, moving);
+  } else if (joint.type == JointType::kSpherical) {
+    motion.ball = moving;
+    motion.after = moved_from_link;
+    motion.before = motion.parent_from_rest * moved_from_link.conjugate() *
+                    QuaternionXyzw(rest_positions_.data() +
+                                   skeleton_->span(moving).quaternion_offset)
+                        .conjugate();
   }
 }
 

@@ -155,8 +155,13 @@ class VolumeRig {
 
   // How the planes at a link's start turn.
   struct JointMotion {
-    // The one hinge between the links; -1 for anything else.
+    Eigen::Matrix3d joint_from_link;
+    // The one hinge, or ball, between the links; -1 for anything else.
     int hinge = -1;
+    int ball = -1;
+    // Of the ball: parent_from_link = before * its quaternion * after.
+    Eigen::Quaterniond before;
+    Eigen::Quaterniond after;
     Eigen::Vector3d axis;  // link frame
     double rest_angle_rad = 0;
     Eigen::Quaterniond parent_from_rest;  // parent link, link at rest
@@ -183,6 +188,8 @@ class VolumeRig {
             std::vector<SkinLink> links, Eigen::VectorXd rest_positions);
 
   void CompileJoints();
+  // Of a link with a parent.
+  void CompileMotion(int link, const WorldTransforms& world_from_joints);
   absl::Status SetMuscles(const SkinMuscles& muscles);
   void EvaluateRest();
 
