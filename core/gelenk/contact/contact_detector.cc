@@ -27,12 +27,12 @@ void FootContactState::Update(
     const ContactThresholds& thresholds,
     const std::array<double, kFootPointCount>& heights,
     const std::array<Eigen::Vector3d, kFootPointCount>& velocities,
-    const Eigen::Vector3d& ball_from_heel, bool may_begin) {
+    const Eigen::Vector3d& ball_from_heel) {
   for (int point = 0; point < kFootPointCount; ++point) {
     const double speed = velocities[point].norm();
     Contact& contact = contacts_[point];
     if (contact == Contact::kNone) {
-      if (may_begin && heights[point] < thresholds.max_height_on &&
+      if (heights[point] < thresholds.max_height_on &&
           speed < thresholds.max_speed_on) {
         contact = Contact::kPlanted;
       }
@@ -223,7 +223,7 @@ const FootContacts& ContactDetector::Update(const FootPoints& points,
           (HeightOf(points, side, point) - bias_m_[side][point]) / size_;
     }
     states_[side].Update(thresholds_, heights, velocities[side],
-                         points[side][kBall] - points[side][kHeel], !is_first);
+                         points[side][kBall] - points[side][kHeel]);
     contacts_[side] = states_[side].contacts();
   }
   Remember(points);

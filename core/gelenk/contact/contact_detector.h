@@ -50,11 +50,11 @@ struct FeetGeometry {
 class FootContactState {
  public:
   // `heights` above the floor in planted position and `velocities` of heel,
-  // ball and tip, for a leg of kReferenceLegM; `may_begin` lets contacts begin.
+  // ball and tip, for a leg of kReferenceLegM.
   void Update(const ContactThresholds& thresholds,
               const std::array<double, kFootPointCount>& heights,
               const std::array<Eigen::Vector3d, kFootPointCount>& velocities,
-              const Eigen::Vector3d& ball_from_heel, bool may_begin);
+              const Eigen::Vector3d& ball_from_heel);
 
   const std::array<Contact, kFootPointCount>& contacts() const {
     return contacts_;
@@ -77,8 +77,8 @@ class ContactDetector {
                            std::shared_ptr<const Ground> ground = nullptr,
                            const ContactThresholds& thresholds = {});
 
-  // The frame `dt_s` > 0 after the one before; the first frame has no contacts.
-  // Allocates nothing.
+  // The frame `dt_s` > 0 after the one before; of the first frame only
+  // heights are known. Allocates nothing.
   const FootContacts& Update(const FootPoints& points, double dt_s);
 
   const FootContacts& contacts() const { return contacts_; }

@@ -54,7 +54,7 @@ class ContactLabeller {
         }
         const auto& foot = frames_[f][side];
         state.Update(thresholds_, heights, velocities_[f][side],
-                     foot[kBall] - foot[kHeel], true);
+                     foot[kBall] - foot[kHeel]);
         labels_.frames[f][side] = state.contacts();
       }
       for (int point = 0; point < kFootPointCount; ++point) {

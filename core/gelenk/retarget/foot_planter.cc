@@ -25,8 +25,10 @@ constexpr double kMaxDrift = 0.1;
 // A tip that asks for a larger turn of the toe is let go.
 constexpr double kMaxTipTurn = 34 * kDegree;
 constexpr double kToeTime_s = 0.03;
-// High kicks and jumps ask for more.
+// High kicks and jumps ask for more: per second, and per frame where those are
+// few.
 constexpr double kMaxToeSpeed = 900 * kDegree;
+constexpr double kMaxToeStep = 12 * kDegree;
 // A foot on its tip has no direction.
 constexpr double kMaxSteepness = 0.99;
 
@@ -103,7 +105,7 @@ void FootPlanter::UpdateLock(int point, bool in_contact, const FootPose& goal,
   }
   const double planted = foot_.PlantedHeight(point, lock.place);
   double& height = lock.place.y();
-  height += (planted - height) * Approach(dt_s, kLandTime_s);
+  height += (planted - height) * (is_first_ ? 1 : Approach(dt_s, kLandTime_s));
   height = std::max(height, planted);
 }
 
@@ -148,6 +150,7 @@ FootPose FootPlanter::Plant(
   }
   moved_ = pose.ankle - goal.ankle;
   turned_ = pose.orientation * goal.orientation.conjugate();
+  is_first_ = false;
   return pose;
 }
 
@@ -174,19 +177,41 @@ void FootPlanter::HoldTip(const Vector3d& ball, bool in_contact, double dt_s,
 }
 
 Quaterniond FootPlanter::PlantToe(
-    const FootPose& planted, const Quaterniond& wanted,
-    const std::array<Contact, kFootPointCount>& contacts, double dt_s) {
+    const Quaterniond& wanted,
+    const std::array<Contact, kFootPointCount>& contacts, double dt_s,
+    FootPose& planted) {
   const Vector3d ball = planted * foot_.shape.ball;
   Quaterniond toe = (turned_ * wanted).normalized();
   HoldTip(ball, contacts[kTip] == Contact::kPlanted, dt_s, toe);
   toe = LiftToe(foot_, ball, toe);
   const Quaterniond turn = toe * wanted.conjugate();
-  const double most = kMaxToeSpeed * dt_s;
   const double way = AngleBetween(toe_turned_, turn);
-  double part = Approach(dt_s, kToeTime_s);
-  if (part * way > most) part = most / way;
-  toe_turned_ = toe_turned_.slerp(part, turn);
-  return LiftToe(foot_, ball, (toe_turned_ * wanted).normalized());
+  const double most = std::min(kMaxToeSpeed * dt_s, kMaxToeStep);
+  double part = toe_is_first_ ? 1 : Approach(dt_s, kToeTime_s);
+  if (!toe_is_first_ && part * way > most) part = most / way;
+  Quaterniond turned = toe_turned_.slerp(part, turn);
+  // Out of the ground as far as the speed allows.
+  const Quaterniond lifted =
+      LiftToe(foot_, ball, (turned * wanted).normalized()) * wanted.conjugate();
+  const double lift = AngleBetween(turned, lifted);
+  const double left = toe_is_first_ ? lift : most - part * way;
+  if (lift > 0) turned = turned.slerp(std::min(1.0, left / lift), lifted);
+  toe_turned_ = turned.normalized();
+  toe_is_first_ = false;
+  toe = (toe_turned_ * wanted).normalized();
+  if (!foot_.shape.has_tip) return toe;
+  const Vector3d tip = ball + toe * foot_.shape.tip;
+  const double depth = foot_.PlantedHeight(kTip, tip) - tip.y();
+  if (depth <= 0) return toe;
+  // A foot that stands keeps its place: then the toe gives way.
+  if (locks_[kHeel].is_on || locks_[kBall].is_on) {
+    toe = LiftToe(foot_, ball, toe);
+    toe_turned_ = toe * wanted.conjugate();
+    return toe;
+  }
+  planted.ankle.y() += depth;
+  moved_.y() += depth;
+  return toe;
 }
 
 }  // namespace gelenk

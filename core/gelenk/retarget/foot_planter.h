@@ -62,6 +62,8 @@ class FootPlanter {
     moved_.setZero();
     turned_.setIdentity();
     toe_turned_.setIdentity();
+    is_first_ = true;
+    toe_is_first_ = true;
   }
 
   // Where the foot is to be, given where it would be. Allocates nothing.
@@ -70,10 +72,12 @@ class FootPlanter {
                  double dt_s);
 
   // The toe of the foot that Plant gave last: `wanted` is its orientation in
-  // the copied pose.
+  // the copied pose. Toes turn at a limited speed; what that
+  // leaves in the ground lifts `planted` where nothing holds it.
   Eigen::Quaterniond PlantToe(
-      const FootPose& planted, const Eigen::Quaterniond& wanted,
-      const std::array<Contact, kFootPointCount>& contacts, double dt_s);
+      const Eigen::Quaterniond& wanted,
+      const std::array<Contact, kFootPointCount>& contacts, double dt_s,
+      FootPose& planted);
 
  private:
   struct Lock {
@@ -100,6 +104,9 @@ class FootPlanter {
   Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();
   Eigen::Quaterniond turned_ = Eigen::Quaterniond::Identity();
   Eigen::Quaterniond toe_turned_ = Eigen::Quaterniond::Identity();
+  // Nothing can pop in a first frame: feet stand at once.
+  bool is_first_ = true;
+  bool toe_is_first_ = true;
 };
 
 }  // namespace gelenk

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "gelenk/math/rotation.h"
 
@@ -14,9 +16,13 @@ namespace {
 
 // A limb that is bent this much (sine) tells its plane fully.
 constexpr double kFullBend = 0.35;
-// A plane that turns against the remembered one by more is a joint that bends
-// backwards a little: noise.
+// A plane that turns against the remembered one by more, of a limb that is less
+// than fully bent, is a joint that bends backwards a little: noise.
 constexpr double kMaxOpposition = -0.2;
+// How fast the plane turns about the limb.
+constexpr double kMaxPlaneSpeed = 1200 * std::numbers::pi / 180;
+// Less of a bend has no plane.
+constexpr double kMinBendPart = 1e-3;
 
 // The frame whose first axis is `x` and whose third is nearest to `z`.
 Eigen::Matrix3d FrameOf(const Vector3d& x, const Vector3d& z) {
@@ -29,18 +35,27 @@ Eigen::Matrix3d FrameOf(const Vector3d& x, const Vector3d& z) {
 
 }  // namespace
 
-void LimbBend::Bend(const Vector3d& goal, LimbPose& limb) {
+void LimbBend::Remember(const Vector3d& bend, const Quaterniond& anatomical,
+                        double dt_s) {
+  const double part = std::min(1.0, bend.norm() / kFullBend);
+  const bool is_first = std::exchange(is_first_, false);
+  if (part < kMinBendPart) return;
+  const Vector3d plane = anatomical.conjugate() * bend.normalized();
+  if (part < 1 && plane.dot(normal_) < kMaxOpposition) return;
+  const Quaterniond turn = ShortestRotation(normal_, plane);
+  const double angle = AngleBetween(Quaterniond::Identity(), turn);
+  double way = part * part;
+  if (!is_first && way * angle > kMaxPlaneSpeed * dt_s) {
+    way = kMaxPlaneSpeed * dt_s / angle;
+  }
+  normal_ = (Quaterniond::Identity().slerp(way, turn) * normal_).normalized();
+}
+
+void LimbBend::Bend(const Vector3d& goal, double dt_s, LimbPose& limb) {
   const Vector3d upper = (limb.middle - limb.root).stableNormalized();
   const Vector3d lower = (limb.end - limb.middle).stableNormalized();
   const Quaterniond anatomical = limb.upper * anatomy_.conjugate();
-  const Vector3d bend = upper.cross(lower);
-  const double part = std::min(1.0, bend.norm() / kFullBend);
-  if (part > 1e-3) {
-    const Vector3d plane = anatomical.conjugate() * bend.normalized();
-    if (plane.dot(normal_) >= kMaxOpposition) {
-      normal_ = (normal_ + (plane - normal_) * part * part).normalized();
-    }
-  }
+  Remember(upper.cross(lower), anatomical, dt_s);
   Vector3d normal = anatomical * normal_;
   normal -= upper * upper.dot(normal);
   if (normal.norm() < 1e-6) normal = upper.unitOrthogonal();

@@ -3,9 +3,11 @@
 //
 // Starting from the copied rotations the limb is turned by the shortest
 // rotation onto the new direction of its end, then bent in its plane. A
-// straight limb has no plane: its normal is kept in the frame of the upper bone
-// and renewed as strongly as the limb is bent; without that memory straight
-// elbows and knees flip by 40 degrees in a frame.
+// straight limb has // no plane: its normal is kept in the frame of the upper
+// bone and renewed as strongly as the limb is bent, at a limited speed; without
+// that memory straight elbows and knees flip by 40 degrees in a frame. Limbs
+// that bend backwards a little are noise; those that bend backwards much are
+// rigs that do so.
 #ifndef GELENK_RETARGET_LIMB_BEND_H_
 #define GELENK_RETARGET_LIMB_BEND_H_
 
@@ -39,18 +41,26 @@ class LimbBend {
            const Eigen::Quaterniond& anatomy)
       : lengths_(lengths), hinge_(hinge), anatomy_(anatomy), normal_(hinge) {}
 
-  void Reset() { normal_ = hinge_; }
+  void Reset() {
+    normal_ = hinge_;
+    is_first_ = true;
+  }
 
   // Turns the bones so that the end comes to `goal`, or as near as it can.
   // Allocates nothing.
-  void Bend(const Eigen::Vector3d& goal, LimbPose& limb);
+  void Bend(const Eigen::Vector3d& goal, double dt_s, LimbPose& limb);
 
  private:
+  // Renews the normal by that of the copied pose.
+  void Remember(const Eigen::Vector3d& bend,
+                const Eigen::Quaterniond& anatomical, double dt_s);
+
   LimbLengths lengths_;
   Eigen::Vector3d hinge_;
   Eigen::Quaterniond anatomy_;
   // Unit, in the anatomical frame of the upper bone.
   Eigen::Vector3d normal_;
+  bool is_first_ = true;
 };
 
 }  // namespace gelenk

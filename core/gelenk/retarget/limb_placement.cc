@@ -35,11 +35,11 @@ void LimbPlacement::Reset() {
 }
 
 void LimbPlacement::PlaceLimb(BodyRole upper, BodyRole middle, BodyRole end,
-                              const Vector3d& goal, LimbBend& bend,
+                              const Vector3d& goal, double dt_s, LimbBend& bend,
                               RigPose& rig) {
   LimbPose limb = {rig.orientation(upper), rig.orientation(middle),
                    rig.place(upper), rig.place(middle), rig.place(end)};
-  bend.Bend(goal, limb);
+  bend.Bend(goal, dt_s, limb);
   rig.SetWanted(target_->map.joint(upper), limb.upper);
   rig.SetWanted(target_->map.joint(middle), limb.lower);
 }
@@ -62,7 +62,7 @@ Vector3d LimbPlacement::Apply(const LimbGoals& goals, double dt_s,
   for (int side : kSides) {
     if (goals.feet[side] && legs_[side]) {
       const LegRoles& leg = kLegRoles[side];
-      PlaceLimb(leg.thigh, leg.shin, leg.foot, goals.feet[side]->ankle,
+      PlaceLimb(leg.thigh, leg.shin, leg.foot, goals.feet[side]->ankle, dt_s,
                 *legs_[side], rig);
       rig.SetWanted(target_->map.joint(leg.foot),
                     goals.feet[side]->orientation);
@@ -72,7 +72,7 @@ Vector3d LimbPlacement::Apply(const LimbGoals& goals, double dt_s,
     }
     if (goals.hands[side] && arms_[side]) {
       const ArmRoles& arm = kArmRoles[side];
-      PlaceLimb(arm.upper_arm, arm.forearm, arm.hand, *goals.hands[side],
+      PlaceLimb(arm.upper_arm, arm.forearm, arm.hand, *goals.hands[side], dt_s,
                 *arms_[side], rig);
     }
   }

@@ -36,7 +36,8 @@ class LimbPlacement {
 
  private:
   void PlaceLimb(BodyRole upper, BodyRole middle, BodyRole end,
-                 const Eigen::Vector3d& goal, LimbBend& bend, RigPose& rig);
+                 const Eigen::Vector3d& goal, double dt_s, LimbBend& bend,
+                 RigPose& rig);
 
   std::shared_ptr<const BodyModel> target_;
   PelvisShift pelvis_shift_;

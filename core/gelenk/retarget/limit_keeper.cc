@@ -10,8 +10,8 @@ namespace {
 constexpr double kFootWeight = 1;
 constexpr double kFootScale_m_per_rad = 0.5;
 constexpr double kHandWeight = 0.1;
-constexpr double kPostureWeight = 1e-3;
-constexpr int kMaxIterationsAFrame = 12;
+constexpr double kPostureWeight = 1e-4;
+constexpr int kMaxIterationsAFrame = 20;
 // Less is the rounding of limits.
 constexpr double kNoExcess = 1e-7;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "gelenk/math/rotation.h"
@@ -25,28 +26,34 @@ const double kBackwardSine = -std::sin(3 * kDegree);
 // Differences are over this time, so that the frame rate does not matter.
 constexpr double kJerkStep_s = 1.0 / 30;
 
-constexpr std::array<BodyRole, 6> kJerkRoles = {
-    BodyRole::kLeftHand,  BodyRole::kRightHand, BodyRole::kLeftFoot,
-    BodyRole::kRightFoot, BodyRole::kHead,      BodyRole::kPelvis};
-
-double MeanJerk(const BodyMotionView& motion) {
+// Mean third difference of the place of `role`.
+double JerkOf(const BodyMotionView& motion, BodyRole role) {
   const int count = static_cast<int>(motion.frames.size());
   const int step = std::max(
       1, static_cast<int>(std::lround(kJerkStep_s / motion.frame_time_s)));
   const double step_s = step * motion.frame_time_s;
+  if (count <= 3 * step || !motion.model.map.Has(role)) return 0;
   double sum = 0;
-  int samples = 0;
   for (int f = 3 * step; f < count; ++f) {
-    for (BodyRole role : kJerkRoles) {
-      if (!motion.model.map.Has(role)) continue;
-      const auto at = [&](int back) -> const Vector3d& {
-        return motion.frames[f - back * step].position(role);
-      };
-      sum += (at(0) - 3 * at(1) + 3 * at(2) - at(3)).norm();
-      ++samples;
-    }
+    const auto at = [&](int back) -> const Vector3d& {
+      return motion.frames[f - back * step].position(role);
+    };
+    sum += (at(0) - 3 * at(1) + 3 * at(2) - at(3)).norm();
   }
-  return samples > 0 ? sum / samples / (step_s * step_s * step_s) : 0;
+  return sum / (count - 3 * step) / (step_s * step_s * step_s);
+}
+
+// The length of the bones from the pelvis to `role` at the reference; that of a
+// leg for the pelvis itself.
+double ReachOf(const BodyModel& model, BodyRole role) {
+  const Skeleton& skeleton = *model.skeleton;
+  const int pelvis = model.map.joint(BodyRole::kPelvis);
+  double way = 0;
+  for (int i = model.map.joint(role); i >= 0 && i != pelvis;
+       i = skeleton.span(i).parent) {
+    way += model.parent_from_joint[i].translation.norm();
+  }
+  return way > 0 ? way : model.leg_length;
 }
 
 // The distance from thigh to foot as a part of the leg.
@@ -117,7 +124,14 @@ MotionQuality MeasureMotion(const BodyMotionView& motion,
       }
     }
   }
-  quality.jerk_m_s3 = MeanJerk(motion);
+  int parts = 0;
+  for (size_t i = 0; i < kJerkRoles.size(); ++i) {
+    if (!map.Has(kJerkRoles[i])) continue;
+    quality.part_jerk_m_s3[i] = JerkOf(motion, kJerkRoles[i]);
+    quality.jerk_m_s3 += quality.part_jerk_m_s3[i];
+    ++parts;
+  }
+  if (parts > 0) quality.jerk_m_s3 /= parts;
   for (size_t f = 1; f < motion.frames.size(); ++f) {
     for (int i = 0; i < kBodyRoleCount; ++i) {
       const auto role = static_cast<BodyRole>(i);
@@ -139,8 +153,18 @@ MotionComparison CompareMotion(const BodyMotionView& source,
                                        source_quality.skate.label_cm_s * scale);
   comparison.rule_skate_ratio = Ratio(made_quality.skate.rule_cm_s,
                                       source_quality.skate.rule_cm_s * scale);
-  comparison.jerk_ratio =
-      Ratio(made_quality.jerk_m_s3, source_quality.jerk_m_s3 * scale);
+  double jerk = 0;
+  double source_jerk = 0;
+  for (size_t i = 0; i < kJerkRoles.size(); ++i) {
+    const BodyRole role = kJerkRoles[i];
+    if (!source.model.map.Has(role) || !made.model.map.Has(role)) continue;
+    // Parts travel as the legs are longer and turn as their own bones are.
+    const double size = std::max(
+        scale, ReachOf(made.model, role) / ReachOf(source.model, role));
+    jerk += made_quality.part_jerk_m_s3[i];
+    source_jerk += size * source_quality.part_jerk_m_s3[i];
+  }
+  comparison.jerk_ratio = Ratio(jerk, source_jerk);
   for (size_t f = 0; f < made.frames.size(); ++f) {
     for (int side : kSides) {
       if (source.model.map.HasLeg(side) && made.model.map.HasLeg(side)) {

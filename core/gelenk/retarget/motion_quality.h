@@ -3,7 +3,7 @@
 #ifndef GELENK_RETARGET_MOTION_QUALITY_H_
 #define GELENK_RETARGET_MOTION_QUALITY_H_
 
-#include <optional>
+#include <array>
 #include <vector>
 
 #include "absl/types/span.h"
@@ -20,6 +20,11 @@ struct BodyMotionView {
   double frame_time_s = 1.0 / 30;
 };
 
+// What jerk is measured at.
+inline constexpr std::array<BodyRole, 6> kJerkRoles = {
+    BodyRole::kLeftHand,  BodyRole::kRightHand, BodyRole::kLeftFoot,
+    BodyRole::kRightFoot, BodyRole::kHead,      BodyRole::kPelvis};
+
 struct MotionQuality {
   FootSkate skate;
   Penetration penetration;
@@ -27,6 +32,8 @@ struct MotionQuality {
   int hyper_extended_frames = 0;
   // Mean third difference of hands, feet, head and pelvis, m/s^3.
   double jerk_m_s3 = 0;
+  // The same of each, in the order of kJerkRoles; 0 where it is missing.
+  std::array<double, 6> part_jerk_m_s3 = {};
   // The largest turn of a part of the body from one frame to the next, degrees.
   double largest_turn_deg = 0;
 };
@@ -37,6 +44,9 @@ struct MotionComparison {
   // stands perfectly still and so does the other.
   double label_skate_ratio = 0;
   double rule_skate_ratio = 0;
+  // Of hands, feet, head and pelvis together; the source's made larger as the
+  // legs or the bones from the pelvis to the part are longer, whichever is
+  // more.
   double jerk_ratio = 0;
   // Frames of legs that are hyper-extended where the source's are not.
   int new_hyper_extended_frames = 0;

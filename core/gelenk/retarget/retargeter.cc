@@ -143,7 +143,7 @@ void Retargeter::AimFeet(const BodyPose& source, double dt_s) {
     const auto& contacts = report_.contacts[side];
     goals_.feet[side] = planters_[side]->Plant(goal, contacts, dt_s);
     goals_.toes[side] =
-        planters_[side]->PlantToe(*goals_.feet[side], toe, contacts, dt_s);
+        planters_[side]->PlantToe(toe, contacts, dt_s, *goals_.feet[side]);
   }
 }
 
