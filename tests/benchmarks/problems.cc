@@ -188,4 +188,53 @@ StreamProblem BodyProblem(int frame_count) {
   return Record(skeleton, std::move(goals), frame_count, move);
 }
 
+StreamProblem StandingProblem(int frame_count, bool priorities) {
+  StreamProblem problem;
+  problem.skeleton = Body();
+  const Skeleton& skeleton = *problem.skeleton;
+  // Knees and elbows a little bent: straight ones are singular.
+  problem.start = NeutralPositions(skeleton);
+  const auto bend = [&](const char* id, const Vector3d& turn) {
+    const int at = skeleton.span(skeleton.FindJoint(id)).quaternion_offset;
+    StoreXyzw(ExpRotation(turn), &problem.start[at]);
+  };
+  for (const char* side : {"l", "r"}) {
+    const std::string limb(side);
+    const double sign = limb == "l" ? 1 : -1;
+    bend((limb + "_thigh").c_str(), {-0.35, 0, 0});
+    bend((limb + "_shin").c_str(), {0.7, 0, 0});
+    bend((limb + "_foot").c_str(), {-0.35, 0, 0});
+    bend((limb + "_arm").c_str(), {0, 0, -sign * 0.8});
+    bend((limb + "_forearm").c_str(), {0, -sign * 0.8, 0});
+  }
+  WorldTransforms frames;
+  ForwardKinematics(skeleton, problem.start, frames);
+  for (const char* id : {"l_foot", "r_foot"}) {
+    PoseGoal goal;
+    goal.end_effector_id = id;
+    goal.world_pose = frames[skeleton.FindJoint(id)];
+    problem.goals.push_back({id, 1, goal, 0});
+  }
+  for (const char* id : {"l_hand", "r_hand"}) {
+    PositionGoal goal;
+    goal.end_effector_id = id;
+    goal.world_position = frames[skeleton.FindJoint(id)].translation;
+    problem.goals.push_back({id, 1, goal, priorities ? 1 : 0});
+  }
+  problem.goals.push_back({"posture", priorities ? 1 : 1e-4,
+                           PostureGoal{problem.start, {}}, priorities ? 2 : 0});
+  for (int f = 0; f < frame_count; ++f) {
+    std::vector<GoalTarget> targets;
+    for (size_t g = 0; g < problem.goals.size(); ++g) {
+      targets.push_back(gelenk::TargetOf(problem.goals[g].kind));
+      if (auto* point = std::get_if<Vector3d>(&targets.back())) {
+        const int c = 3 * static_cast<int>(g);
+        *point += 0.15 * Vector3d(Wave(f, c), Wave(f, c + 1), Wave(f, c + 2));
+      }
+    }
+    problem.frames.push_back(std::move(targets));
+  }
+  return problem;
+}
+
 }  // namespace gelenk::benchmarks

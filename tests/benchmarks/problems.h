@@ -28,6 +28,11 @@ StreamProblem PandaProblem(int frame_count);
 // by pose. It dances.
 StreamProblem BodyProblem(int frame_count);
 
+// The same body, feet planted by pose, hands by position, and a posture that
+// holds the rest; the hands wave. With `priorities` at levels of their own in
+// this order; without, all at one, the posture at a weight of 1e-4.
+StreamProblem StandingProblem(int frame_count, bool priorities);
+
 }  // namespace gelenk::benchmarks
 
 #endif  // GELENK_TESTS_BENCHMARKS_PROBLEMS_H_

@@ -31,6 +31,8 @@ class GoalLinearizer {
   void MoveTo(const ConstVectorView& positions);
 
   const WorldTransforms& world_from_joints() const { return frames_; }
+  // What a goal looks at.
+  const EffectorTask& task(int goal_index) const { return tasks_[goal_index]; }
 
   static int RowCount(const kernel::TaskTarget& target) {
     return target.translation_rows + target.rotation_rows;

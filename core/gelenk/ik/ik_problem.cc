@@ -20,8 +20,8 @@
 namespace gelenk {
 namespace {
 
-// The kinds that the solvers know so far.
-bool IsSolved(const Skeleton& skeleton, const Goal& goal,
+// Whether it is for the sparse tree.
+bool IsSparse(const Skeleton& skeleton, const Goal& goal,
               const EffectorTask& task) {
   return IsOnOnePath(skeleton, task) &&
          !std::holds_alternative<CenterOfMassGoal>(goal.kind);
@@ -81,27 +81,24 @@ absl::StatusOr<IkProblem> IkProblem::Create(
         [&](const auto& kind) { return TaskOf(*skeleton, kind); }, goal.kind));
   }
   if (!violations.empty()) return violations.ToStatus();
+  bool needs_levels = false;
   for (size_t i = 0; i < goals.size(); ++i) {
-    const Goal& goal = goals[i];
-    if (IsSolved(*skeleton, goal, tasks[i]) &&
-        goal.priority == goals[0].priority) {
-      continue;
-    }
-    return absl::UnimplementedError(
-        absl::StrCat("goals: no solver yet for ", GoalKindName(goal.kind),
-                     " goals of priority ", goal.priority));
+    needs_levels = needs_levels || !IsSparse(*skeleton, goals[i], tasks[i]) ||
+                   goals[i].priority != goals[0].priority;
   }
   std::shared_ptr<const SparseTree> tree =
       trees ? trees(tasks) : std::make_shared<SparseTree>(*skeleton, tasks);
-  return IkProblem(std::move(skeleton), std::move(goals), std::move(tree));
+  return IkProblem(std::move(skeleton), std::move(goals), std::move(tree),
+                   needs_levels);
 }
 
 IkProblem::IkProblem(std::shared_ptr<const Skeleton> skeleton,
                      std::vector<Goal> goals,
-                     std::shared_ptr<const SparseTree> tree)
+                     std::shared_ptr<const SparseTree> tree, bool needs_levels)
     : skeleton_(std::move(skeleton)),
       goals_(std::move(goals)),
       tree_(std::move(tree)),
+      needs_levels_(needs_levels),
       targets_(goals_.size()) {
   for (size_t i = 0; i < goals_.size(); ++i) {
     const int goal = static_cast<int>(i);

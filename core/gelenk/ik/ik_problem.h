@@ -30,9 +30,9 @@ using TreeSource = std::function<std::shared_ptr<const SparseTree>(
 class IkProblem {
  public:
   // INVALID_ARGUMENT listing every bad goal: malformed (see CheckAndNormalize),
-  // not of this skeleton (see CheckOn), duplicate id, too many. UNIMPLEMENTED
-  // for kinds that no solver knows yet. No goals is fine: solving leaves the
-  // pose as it is. Without `trees` the problem makes a tree of its own.
+  // not of this skeleton (see CheckOn), duplicate id, too many. No goals is
+  // fine: solving leaves the pose as it is. Without `trees` the problem makes a
+  // tree of its own.
   static absl::StatusOr<IkProblem> Create(
       std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
       const TreeSource& trees = nullptr);
@@ -74,6 +74,10 @@ class IkProblem {
   // For a problem that takes the place of another one.
   void KeepPlants(const IkProblem& before);
 
+  // Goals of several priorities, be they on or off, or such that couple
+  // branches: for PrioritizedSolver.
+  bool needs_levels() const { return needs_levels_; }
+
   // For solvers, by goal.
   const SparseTree& tree() const { return *tree_; }
   absl::Span<const kernel::TaskTarget> targets() const { return targets_; }
@@ -100,7 +104,7 @@ class IkProblem {
 
  private:
   IkProblem(std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
-            std::shared_ptr<const SparseTree> tree);
+            std::shared_ptr<const SparseTree> tree, bool needs_levels);
   // Bring targets_ and posture_ up to goals_.
   void RefreshTarget(int goal_index);
   void RefreshWeights(int goal_index);
@@ -110,6 +114,7 @@ class IkProblem {
   std::shared_ptr<const Skeleton> skeleton_;
   std::vector<Goal> goals_;
   std::shared_ptr<const SparseTree> tree_;
+  bool needs_levels_;
   std::vector<kernel::TaskTarget> targets_;
   int free_plant_count_ = 0;  // on, without a pose to hold
   std::vector<kernel::PostureTerm> posture_;

@@ -73,6 +73,10 @@ void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
     case SolverMethod::kFabrik:
       return fabrik_.Solve(problem, options, positions, report, stop);
     default:
+      if (problem.needs_levels()) {
+        return prioritized_.Solve(problem, options, start, positions, report,
+                                  stop, bounds);
+      }
       return levenberg_marquardt_.Solve(problem, options, start, positions,
                                         report, stop, bounds);
   }

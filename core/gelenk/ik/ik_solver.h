@@ -3,7 +3,8 @@
 // Owns a solver of each method, made when it is first needed, and with it their
 // working memory. Not thread-safe: one per thread. Deterministic unless a time
 // limit strikes. Levenberg-Marquardt allocates nothing once it has seen a
-// problem of that size; the others say for themselves.
+// problem of that size; the others say for themselves. It goes level by level
+// (see PrioritizedSolver) where the problem needs that.
 #ifndef GELENK_IK_IK_SOLVER_H_
 #define GELENK_IK_IK_SOLVER_H_
 
@@ -14,6 +15,7 @@
 #include "gelenk/ik/instruction_set.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/ik/newton_solver.h"
+#include "gelenk/ik/prioritized_solver.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
 #include "gelenk/ik/step_bounds.h"
@@ -51,6 +53,7 @@ class IkSolver {
  private:
   Clock clock_;
   LevenbergMarquardtSolver levenberg_marquardt_;
+  PrioritizedSolver prioritized_;
   NewtonSolver newton_{SolverMethod::kNewton};
   NewtonSolver pseudo_inverse_{SolverMethod::kPseudoInverse};
   NewtonSolver minimal_change_{SolverMethod::kMinimalChange};

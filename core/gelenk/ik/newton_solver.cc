@@ -9,14 +9,13 @@
 #include "absl/strings/str_format.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/ik/goal_equations.h"
+#include "gelenk/ik/on_limit.h"
 #include "gelenk/ik/solve_diagnosis.h"
 #include "gelenk/math/pseudo_inverse.h"
 
 namespace gelenk {
 namespace {
 
-// A coordinate this near to its bound is on it.
-constexpr double kOnBound = 1e-9;
 // A step shorter than this, rad or m, leads nowhere: rounding of q is 1e-15.
 constexpr double kNoStep = 1e-13;
 // The null space's part of a step is not shortened below this.
@@ -38,29 +37,6 @@ Eigen::VectorXd StiffnessOf(const Skeleton& skeleton,
     result[static_cast<int>(c)] = all[unknowns[c]];
   }
   return result;
-}
-
-bool IsOnRotationLimit(const Joint& joint, const Eigen::Quaterniond& rotation) {
-  JointLimits narrowed = joint.limits;
-  if (narrowed.swing_cone_rad) *narrowed.swing_cone_rad -= kOnBound;
-  if (narrowed.twist_lower_rad) *narrowed.twist_lower_rad += kOnBound;
-  if (narrowed.twist_upper_rad) *narrowed.twist_upper_rad -= kOnBound;
-  return RotationLimitExcess(narrowed, joint.axis, rotation) > 0;
-}
-
-bool IsOnLimit(const Skeleton& skeleton, int i,
-               const ConstVectorView& positions) {
-  const Joint& joint = skeleton.joint(i);
-  const int begin = skeleton.span(i).position_offset;
-  const PositionBounds& bounds = skeleton.position_bounds();
-  for (int q = begin; q < begin + PositionCount(joint.type); ++q) {
-    if (positions[q] <= bounds.lower[q] + kOnBound ||
-        positions[q] >= bounds.upper[q] - kOnBound) {
-      return true;
-    }
-  }
-  if (!joint.limits.HasRotationLimits()) return false;
-  return IsOnRotationLimit(joint, JointMotion(skeleton, i, positions).rotation);
 }
 
 // Its k-th velocity is that of its k-th number.
@@ -275,6 +251,11 @@ absl::Status NewtonSolver::Check(const IkProblem& problem,
     violations.Add("method",
                    absl::StrCat(SolverMethodName(method),
                                 " takes position, rotation and pose goals"));
+    return violations.ToStatus();
+  }
+  if (problem.needs_levels()) {
+    violations.Add("method", absl::StrCat(SolverMethodName(method),
+                                          " takes goals of one priority"));
     return violations.ToStatus();
   }
   if (method != SolverMethod::kNewton) return absl::OkStatus();

@@ -51,6 +51,7 @@ void LinearizeHalfSpace(const kernel::TaskTarget& target,
   const Eigen::Vector3d normal = View(target.direction);
   const double depth = target.offset - normal.dot(View(frames[0].translation));
   const bool behind = depth > 0;
+  rows.clearance = -depth;
   rows.residual[0] = behind ? depth : 0;
   rows.position_error2 = rows.residual[0] * rows.residual[0];
   rows.rotation_error2 = 0;

@@ -78,6 +78,8 @@ struct GoalRows {
   // Squared errors, m^2 and (2 sin(angle / 2))^2.
   double position_error2;
   double rotation_error2;
+  // Of a half-space, how far its point is on the free side, m; negative behind.
+  double clearance;
 };
 
 // Fills translation_rows + rotation_rows rows; without weights.

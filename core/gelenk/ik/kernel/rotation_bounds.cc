@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "gelenk/ik/rotation_basis.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/skeleton/joint_limits.h"
 
@@ -51,19 +52,8 @@ uint8_t TouchRotationLimit(const RotationLimit& limit, const double* rotation,
   if (touched == 0) return 0;
   if (limit.swing_cone <= kPointCone) touched |= kConeIsPoint;
 
-  // In the rest frame: swing axis n; the axis and its image, a and b. Swing
-  // changes by n . w, twist by (a + b) . w / (1 + a . b) for a rotation
-  // velocity w; the basis is dual to these two and n x (a + b).
-  const Eigen::Vector3d image = q * axis;
-  const Eigen::Vector3d sum = axis + image;
-  const Eigen::Vector3d across = sum.squaredNorm() > 1e-12
-                                     ? parts.swing_axis.cross(sum).normalized()
-                                     : parts.swing_axis.cross(axis).eval();
-  const Eigen::Quaterniond body_from_rest = q.conjugate();
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> basis(body_basis);
-  basis.col(0) = body_from_rest * parts.swing_axis;
-  basis.col(1) = body_from_rest * across;
-  basis.col(2) = axis;
+  basis = RotationBasis(parts, axis, q);
   return touched;
 }
 
