@@ -30,9 +30,12 @@ struct SkinWorkspace {
   WorldTransforms world_from_joints;
   std::vector<Eigen::Matrix<float, 3, 4>> world_from_bind;
   std::vector<Eigen::Matrix<float, 8, 1>> dual_quaternions;
+  std::vector<Eigen::Vector3d> vertices;
   Eigen::MatrixXd points;
+  Eigen::MatrixXd fitted;
   Eigen::MatrixXd net;
   std::vector<float> rows;
+  std::vector<float> sums;
   VertexBlocks blocks;
   QuantizedBlocks quantized;
 };

@@ -6,6 +6,7 @@
 
 #include "gelenk/skin/example_shapes.h"
 #include "gelenk/skin/layered_skin.h"
+#include "gelenk/skin/nurbs_skin.h"
 #include "gelenk/skin/weighted_skin.h"
 #include "tests/testing/allocation_count.h"
 #include "tests/testing/random_pose.h"
@@ -67,6 +68,22 @@ TEST(SkinAllocationTest, WeightedSkins) {
                               RigidWeights(count, 1), options)
              .value());
   }
+}
+
+TEST(SkinAllocationTest, NurbsSkin) {
+  const SkinShape shape = MakeSkinShape("cylinder", 100).value();
+  // A flat sheet along the bones.
+  NurbsSurface sheet;
+  sheet.u = {1, {0, 0, 1, 1}};
+  sheet.v = {3, {0, 0, 0, 0, 1, 1, 1, 1}};
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      sheet.points.emplace_back(2 * j / 3.0, 0.2 * i - 0.1, 0.05);
+      sheet.weights.push_back(1 + 0.1 * j);
+    }
+  }
+  const auto rig = VolumeRig::Create(shape.skeleton).value();
+  ExpectWarmFramesTakeNothing(*NurbsSkin::Create(*rig, sheet).value());
 }
 
 }  // namespace
