@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "gelenk/retarget/retarget_clip.h"
+
 namespace gelenk::testing {
 
 SourceClip MakeSource(BodyClip clip) {
@@ -26,26 +28,30 @@ absl::StatusOr<RetargetRun> RunRetarget(
   }
   RetargetRun run;
   const int count = source.clip.frame_count();
-  run.positions.resize(target->skeleton->position_count(), count);
-  absl::StatusOr<std::unique_ptr<Retargeter>> retargeter =
-      Retargeter::Create(source.clip.model, target, options);
-  if (!retargeter.ok()) return retargeter.status();
-  double hands = 0;
-  for (int f = 0; f < count; ++f) {
-    if (way == RetargetWay::kCopy) {
-      // On the floor of the whole clip: the copy is given the benefit of
-      // look-ahead.
-      (*retargeter)
-          ->RetargetBody(source.poses[f], source.labels.frames[f],
-                         source.labels.floor_m, source.clip.frame_time_s);
-    } else {
+  std::vector<RetargetReport> reports;
+  if (way == RetargetWay::kOnline) {
+    run.positions.resize(target->skeleton->position_count(), count);
+    absl::StatusOr<std::unique_ptr<Retargeter>> retargeter =
+        Retargeter::Create(source.clip.model, target, options);
+    if (!retargeter.ok()) return retargeter.status();
+    for (int f = 0; f < count; ++f) {
       const absl::Status status = (*retargeter)
                                       ->Retarget(source.clip.positions.col(f),
                                                  source.clip.frame_time_s);
       if (!status.ok()) return status;
+      run.positions.col(f) = (*retargeter)->positions();
+      reports.push_back((*retargeter)->report());
     }
-    const RetargetReport& report = (*retargeter)->report();
-    run.positions.col(f) = (*retargeter)->positions();
+  } else {
+    absl::StatusOr<RetargetedClip> clip =
+        RetargetClip(source.clip.model, target, source.clip.positions,
+                     source.clip.frame_time_s, options);
+    if (!clip.ok()) return clip.status();
+    run.positions = std::move(clip->positions);
+    reports = std::move(clip->reports);
+  }
+  double hands = 0;
+  for (const RetargetReport& report : reports) {
     for (int side : kSides) {
       if (target->arms[side].Total() > 0) {
         hands += report.hand_error_m[side] / target->arms[side].Total() / 2;

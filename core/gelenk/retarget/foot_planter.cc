@@ -154,63 +154,72 @@ FootPose FootPlanter::Plant(
   return pose;
 }
 
-void FootPlanter::HoldTip(const Vector3d& ball, bool in_contact, double dt_s,
-                          Quaterniond& toe) {
-  Lock& lock = locks_[kTip];
-  if (!in_contact || !locks_[kBall].is_on || !foot_.shape.has_tip) {
-    lock.is_on = false;
+Quaterniond FootPlanter::PlantToe(
+    const Quaterniond& wanted,
+    const std::array<Contact, kFootPointCount>& contacts, double dt_s,
+    FootPose& planted) {
+  const double height = planted.ankle.y();
+  const Quaterniond toe =
+      toe_.Plant({turned_, locks_[kBall].is_on, locks_[kHeel].is_on}, wanted,
+                 contacts[kTip], dt_s, planted);
+  moved_.y() += planted.ankle.y() - height;
+  return toe;
+}
+
+void ToePlanter::HoldTip(const Vector3d& ball, bool holds, double dt_s,
+                         Quaterniond& toe) {
+  if (!holds || !foot_.shape.has_tip) {
+    tip_is_held_ = false;
     return;
   }
   const Vector3d arm = toe * foot_.shape.tip;
-  if (!lock.is_on) lock = {true, ball + arm, 0};
-  lock.place.y() += (foot_.PlantedHeight(kTip, lock.place) - lock.place.y()) *
-                    Approach(dt_s, kLandTime_s);
-  const Vector3d wanted = lock.place - ball;
+  if (!tip_is_held_) tip_ = ball + arm;
+  tip_is_held_ = true;
+  tip_.y() += (foot_.PlantedHeight(kTip, tip_) - tip_.y()) *
+              Approach(dt_s, kLandTime_s);
+  const Vector3d wanted = tip_ - ball;
   if (wanted.norm() < kNoLength) return;
   const Quaterniond turn =
       ShortestRotation(arm.normalized(), wanted.normalized());
   if (AngleBetween(Quaterniond::Identity(), turn) > kMaxTipTurn) {
-    lock.is_on = false;
+    tip_is_held_ = false;
     return;
   }
   toe = (turn * toe).normalized();
 }
 
-Quaterniond FootPlanter::PlantToe(
-    const Quaterniond& wanted,
-    const std::array<Contact, kFootPointCount>& contacts, double dt_s,
-    FootPose& planted) {
-  const Vector3d ball = planted * foot_.shape.ball;
-  Quaterniond toe = (turned_ * wanted).normalized();
-  HoldTip(ball, contacts[kTip] == Contact::kPlanted, dt_s, toe);
+Quaterniond ToePlanter::Plant(const Foot& foot, const Quaterniond& wanted,
+                              Contact tip, double dt_s, FootPose& pose) {
+  const Vector3d ball = pose * foot_.shape.ball;
+  Quaterniond toe = (foot.turned * wanted).normalized();
+  HoldTip(ball, tip == Contact::kPlanted && foot.holds_ball, dt_s, toe);
   toe = LiftToe(foot_, ball, toe);
   const Quaterniond turn = toe * wanted.conjugate();
-  const double way = AngleBetween(toe_turned_, turn);
+  const double way = AngleBetween(turned_, turn);
   const double most = std::min(kMaxToeSpeed * dt_s, kMaxToeStep);
-  double part = toe_is_first_ ? 1 : Approach(dt_s, kToeTime_s);
-  if (!toe_is_first_ && part * way > most) part = most / way;
-  Quaterniond turned = toe_turned_.slerp(part, turn);
+  double part = is_first_ ? 1 : Approach(dt_s, kToeTime_s);
+  if (!is_first_ && part * way > most) part = most / way;
+  Quaterniond turned = turned_.slerp(part, turn);
   // Out of the ground as far as the speed allows.
   const Quaterniond lifted =
       LiftToe(foot_, ball, (turned * wanted).normalized()) * wanted.conjugate();
   const double lift = AngleBetween(turned, lifted);
-  const double left = toe_is_first_ ? lift : most - part * way;
+  const double left = is_first_ ? lift : most - part * way;
   if (lift > 0) turned = turned.slerp(std::min(1.0, left / lift), lifted);
-  toe_turned_ = turned.normalized();
-  toe_is_first_ = false;
-  toe = (toe_turned_ * wanted).normalized();
+  turned_ = turned.normalized();
+  is_first_ = false;
+  toe = (turned_ * wanted).normalized();
   if (!foot_.shape.has_tip) return toe;
-  const Vector3d tip = ball + toe * foot_.shape.tip;
-  const double depth = foot_.PlantedHeight(kTip, tip) - tip.y();
+  const Vector3d at = ball + toe * foot_.shape.tip;
+  const double depth = foot_.PlantedHeight(kTip, at) - at.y();
   if (depth <= 0) return toe;
-  // A foot that stands keeps its place: then the toe gives way.
-  if (locks_[kHeel].is_on || locks_[kBall].is_on) {
-    toe = LiftToe(foot_, ball, toe);
-    toe_turned_ = toe * wanted.conjugate();
+  if (!foot.holds_heel && !foot.holds_ball) {
+    pose.ankle.y() += depth;
     return toe;
   }
-  planted.ankle.y() += depth;
-  moved_.y() += depth;
+  // A foot that stands keeps its place: then the toe gives way.
+  toe = LiftToe(foot_, ball, toe);
+  turned_ = toe * wanted.conjugate();
   return toe;
 }
 

@@ -51,19 +51,56 @@ Eigen::Quaterniond LiftToe(const FootOnGround& foot,
                            const Eigen::Vector3d& ball,
                            const Eigen::Quaterniond& toe);
 
+// Keeps the toe of one foot out of the ground, and its tip where it stands.
+class ToePlanter {
+ public:
+  explicit ToePlanter(const FootOnGround& foot) : foot_(foot) {}
+
+  void Reset() {
+    tip_is_held_ = false;
+    turned_.setIdentity();
+    is_first_ = true;
+  }
+
+  // What the foot does below the toe.
+  struct Foot {
+    // How far it is turned beside its goal.
+    Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();
+    bool holds_ball = false;
+    bool holds_heel = false;
+  };
+
+  // `wanted` is the orientation of the toe in the copied pose. Toes turn at a
+  // limited speed; what that leaves in the ground lifts `pose` where nothing
+  // holds the foot. Allocates nothing.
+  Eigen::Quaterniond Plant(const Foot& foot, const Eigen::Quaterniond& wanted,
+                           Contact tip, double dt_s, FootPose& pose);
+
+ private:
+  // Turns `toe` onto the place where the tip stands.
+  void HoldTip(const Eigen::Vector3d& ball, bool holds, double dt_s,
+               Eigen::Quaterniond& toe);
+
+  FootOnGround foot_;
+  bool tip_is_held_ = false;
+  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();
+  // The toe beside the wanted one.
+  Eigen::Quaterniond turned_ = Eigen::Quaterniond::Identity();
+  bool is_first_ = true;
+};
+
 class FootPlanter {
  public:
   // `size` as BodyModel::Size of the target. All referred to must outlive it.
   FootPlanter(const FootOnGround& foot, double size)
-      : foot_(foot), size_(size) {}
+      : foot_(foot), size_(size), toe_(foot) {}
 
   void Reset() {
     locks_ = {};
     moved_.setZero();
     turned_.setIdentity();
-    toe_turned_.setIdentity();
+    toe_.Reset();
     is_first_ = true;
-    toe_is_first_ = true;
   }
 
   // Where the foot is to be, given where it would be. Allocates nothing.
@@ -71,9 +108,8 @@ class FootPlanter {
                  const std::array<Contact, kFootPointCount>& contacts,
                  double dt_s);
 
-  // The toe of the foot that Plant gave last: `wanted` is its orientation in
-  // the copied pose. Toes turn at a limited speed; what that
-  // leaves in the ground lifts `planted` where nothing holds it.
+  // The toe of the foot that Plant gave last; see ToePlanter. What it lifts
+  // fades like everything that is moved.
   Eigen::Quaterniond PlantToe(
       const Eigen::Quaterniond& wanted,
       const std::array<Contact, kFootPointCount>& contacts, double dt_s,
@@ -93,20 +129,16 @@ class FootPlanter {
                   const FootPose& pose, double dt_s);
   // The foot on both locks.
   void StandOnBoth(FootPose& pose);
-  // Turns `toe` onto the lock of the tip.
-  void HoldTip(const Eigen::Vector3d& ball, bool in_contact, double dt_s,
-               Eigen::Quaterniond& toe);
-
   FootOnGround foot_;
   double size_;
-  std::array<Lock, kFootPointCount> locks_;
+  // Of heel and ball.
+  std::array<Lock, 2> locks_;
+  ToePlanter toe_;
   // What the locks have moved: ankle and orientation beside those wanted.
   Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();
   Eigen::Quaterniond turned_ = Eigen::Quaterniond::Identity();
-  Eigen::Quaterniond toe_turned_ = Eigen::Quaterniond::Identity();
   // Nothing can pop in a first frame: feet stand at once.
   bool is_first_ = true;
-  bool toe_is_first_ = true;
 };
 
 }  // namespace gelenk

@@ -113,12 +113,20 @@ FootPose Retargeter::FootGoal(const BodyPose& source, int side) const {
   const LegRoles& leg = kLegRoles[side];
   const double scale =
       target_->legs[side].Total() / source_->legs[side].Total();
-  return {rig_.orientation(leg.foot),
-          rig_.place(leg.thigh) +
-              scale * (source.position(leg.foot) - source.position(leg.thigh))};
+  FootPose goal = {
+      rig_.orientation(leg.foot),
+      rig_.place(leg.thigh) +
+          scale * (source.position(leg.foot) - source.position(leg.thigh))};
+  goal.ankle.y() += ground_->HeightAt(goal.ankle) - ground_m_;
+  return goal;
 }
 
-double Retargeter::GroundUnder(const BodyPose& source, double dt_s) {
+Quaterniond Retargeter::ToeGoal(const FootPose& foot, int side) const {
+  const BodyRole toe = kLegRoles[side].toe;
+  return target_->map.Has(toe) ? rig_.orientation(toe) : foot.orientation;
+}
+
+double Retargeter::FollowGround(const BodyPose& source, double dt_s) {
   const Vector3d below = transfer_.scale() * source.hip_center;
   const double height = ground_->HeightAt(below);
   ground_m_ = is_first_ ? height
@@ -129,12 +137,8 @@ double Retargeter::GroundUnder(const BodyPose& source, double dt_s) {
 
 void Retargeter::AimFeet(const BodyPose& source, double dt_s) {
   for (int side : kSides) {
-    const LegRoles& leg = kLegRoles[side];
-    FootPose goal = FootGoal(source, side);
-    goal.ankle.y() += ground_->HeightAt(goal.ankle) - ground_m_;
-    const Quaterniond toe = target_->map.Has(leg.toe)
-                                ? rig_.orientation(leg.toe)
-                                : goal.orientation;
+    const FootPose goal = FootGoal(source, side);
+    const Quaterniond toe = ToeGoal(goal, side);
     if (!options_.plant_feet) {
       goals_.feet[side] = goal;
       goals_.toes[side] = toe;
@@ -180,10 +184,41 @@ void Retargeter::RetargetBody(const BodyPose& source,
                               double source_floor_m, double dt_s) {
   report_.contacts = contacts;
   report_.source_floor_m = source_floor_m;
-  transfer_.Apply(source, source_floor_m, GroundUnder(source, dt_s), rig_);
+  transfer_.Apply(source, source_floor_m, FollowGround(source, dt_s), rig_);
+  if (options_.place_limbs && has_feet_) AimFeet(source, dt_s);
+  Finish(source, dt_s);
+}
+
+Retargeter::CopiedFeet Retargeter::CopyFeet(const BodyPose& source,
+                                            double source_floor_m,
+                                            double dt_s) {
+  transfer_.Apply(source, source_floor_m, FollowGround(source, dt_s), rig_);
+  is_first_ = false;
+  CopiedFeet copied;
+  for (int side : kSides) {
+    copied.feet[side] = FootGoal(source, side);
+    copied.toes[side] = ToeGoal(copied.feet[side], side);
+  }
+  return copied;
+}
+
+void Retargeter::RetargetBody(const BodyPose& source,
+                              const FootContacts& contacts,
+                              double source_floor_m, const CopiedFeet& planned,
+                              double dt_s) {
+  report_.contacts = contacts;
+  report_.source_floor_m = source_floor_m;
+  transfer_.Apply(source, source_floor_m, FollowGround(source, dt_s), rig_);
+  for (int side : kSides) {
+    goals_.feet[side] = planned.feet[side];
+    goals_.toes[side] = planned.toes[side];
+  }
+  Finish(source, dt_s);
+}
+
+void Retargeter::Finish(const BodyPose& source, double dt_s) {
   report_.pelvis_shift.setZero();
   if (options_.place_limbs) {
-    if (has_feet_) AimFeet(source, dt_s);
     AimHands(source);
     report_.pelvis_shift = placement_.Apply(goals_, dt_s, rig_);
     MeasureErrors();

@@ -86,6 +86,18 @@ class Retargeter {
   void RetargetBody(const BodyPose& source, const FootContacts& contacts,
                     double source_floor_m, double dt_s);
 
+  // Parts of the method, for planning whole clips: where feet and toes would be
+  // without planting, and a frame whose feet are given.
+  struct CopiedFeet {
+    std::array<FootPose, 2> feet;
+    std::array<Eigen::Quaterniond, 2> toes;
+  };
+  CopiedFeet CopyFeet(const BodyPose& source, double source_floor_m,
+                      double dt_s);
+  void RetargetBody(const BodyPose& source, const FootContacts& contacts,
+                    double source_floor_m, const CopiedFeet& planned,
+                    double dt_s);
+
   // Of the last frame.
   const Eigen::VectorXd& positions() const { return positions_; }
   const RetargetReport& report() const { return report_; }
@@ -93,6 +105,7 @@ class Retargeter {
   // Forgets what was before: the next frame is a first one.
   void Reset();
 
+  const Ground& ground() const { return *ground_; }
   const BodyModel& source() const { return *source_; }
   const BodyModel& target() const { return *target_; }
 
@@ -103,12 +116,16 @@ class Retargeter {
 
   // Where the ankle would be if feet were not planted.
   FootPose FootGoal(const BodyPose& source, int side) const;
+  Eigen::Quaterniond ToeGoal(const FootPose& foot, int side) const;
+  // Fills goals_.feet and goals_.toes.
   void AimFeet(const BodyPose& source, double dt_s);
+  // What is left once the feet are aimed.
+  void Finish(const BodyPose& source, double dt_s);
   void AimHands(const BodyPose& source);
   void MeasureErrors();
   // Of the ground under the target: eased, so that the body does not jump up
   // stairs.
-  double GroundUnder(const BodyPose& source, double dt_s);
+  double FollowGround(const BodyPose& source, double dt_s);
 
   std::shared_ptr<const BodyModel> source_;
   std::shared_ptr<const BodyModel> target_;
