@@ -2,6 +2,7 @@
 
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -28,7 +29,31 @@ struct BallJoint {
   double mass_kg;
 };
 
-void AddBall(const BallJoint& ball, SkeletonBuilder& builder) {
+// Takes lengths of a body of kHumanoidHeightM.
+class ScaledBuilder {
+ public:
+  explicit ScaledBuilder(double scale) : scale_(scale) {}
+
+  double scale() const { return scale_; }
+  void AddJoint(Joint joint) {
+    joint.parent_from_joint.translation *= scale_;
+    joint.link_center_of_mass *= scale_;
+    builder_.AddJoint(std::move(joint));
+  }
+  void AddEndEffector(EndEffector end) {
+    end.joint_from_end_effector.translation *= scale_;
+    builder_.AddEndEffector(std::move(end));
+  }
+  absl::StatusOr<std::shared_ptr<const Skeleton>> Build(Eigen::VectorXd rest) {
+    return builder_.SetRestPositions(std::move(rest)).Build();
+  }
+
+ private:
+  double scale_;
+  SkeletonBuilder builder_;
+};
+
+void AddBall(const BallJoint& ball, ScaledBuilder& builder) {
   Joint joint;
   joint.id = ball.id;
   joint.parent_id = ball.parent_id;
@@ -44,7 +69,7 @@ void AddBall(const BallJoint& ball, SkeletonBuilder& builder) {
 }
 
 void AddEnd(const std::string& id, const std::string& joint_id,
-            const Vector3d& place, SkeletonBuilder& builder) {
+            const Vector3d& place, ScaledBuilder& builder) {
   EndEffector end;
   end.id = id;
   end.joint_id = joint_id;
@@ -52,7 +77,7 @@ void AddEnd(const std::string& id, const std::string& joint_id,
   builder.AddEndEffector(end);
 }
 
-void AddTrunk(SkeletonBuilder& builder) {
+void AddTrunk(ScaledBuilder& builder) {
   Joint pelvis;
   pelvis.id = "pelvis";
   pelvis.type = JointType::kFree;
@@ -67,7 +92,7 @@ void AddTrunk(SkeletonBuilder& builder) {
   AddEnd("crown", "head", 0.15 * up, builder);
 }
 
-void AddArm(const std::string& side, double out, SkeletonBuilder& builder) {
+void AddArm(const std::string& side, double out, ScaledBuilder& builder) {
   const std::string clavicle = absl::StrCat(side, "_clavicle");
   const std::string upper = absl::StrCat(side, "_upper_arm");
   const std::string forearm = absl::StrCat(side, "_forearm");
@@ -82,7 +107,7 @@ void AddArm(const std::string& side, double out, SkeletonBuilder& builder) {
   AddEnd(absl::StrCat(side, "_palm"), hand, 0.09 * x, builder);
 }
 
-void AddLeg(const std::string& side, double out, SkeletonBuilder& builder) {
+void AddLeg(const std::string& side, double out, ScaledBuilder& builder) {
   const std::string thigh = absl::StrCat(side, "_thigh");
   const std::string shin = absl::StrCat(side, "_shin");
   const std::string foot = absl::StrCat(side, "_foot");
@@ -100,8 +125,8 @@ void AddLeg(const std::string& side, double out, SkeletonBuilder& builder) {
 
 }  // namespace
 
-std::shared_ptr<const Skeleton> MakeHumanoid() {
-  SkeletonBuilder builder;
+std::shared_ptr<const Skeleton> MakeHumanoid(double height_m) {
+  ScaledBuilder builder(height_m / kHumanoidHeightM);
   AddTrunk(builder);
   AddArm("left", 1, builder);
   AddArm("right", -1, builder);
@@ -109,10 +134,10 @@ std::shared_ptr<const Skeleton> MakeHumanoid() {
   AddLeg("right", -1, builder);
   constexpr int kNumbers = 7 + 21 * 4;
   Eigen::VectorXd rest = Eigen::VectorXd::Zero(kNumbers);
-  rest[1] = kPelvisHeight;
+  rest[1] = builder.scale() * kPelvisHeight;
   for (int w = 6; w < kNumbers; w += 4) rest[w] = 1;
   // What is built here is well formed; a test holds it.
-  return *builder.SetRestPositions(std::move(rest)).Build();
+  return *builder.Build(std::move(rest));
 }
 
 std::vector<absl::string_view> BundledSkeletonNames() { return {kHumanoid}; }

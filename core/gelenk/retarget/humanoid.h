@@ -15,7 +15,10 @@ namespace gelenk {
 // joints (free "pelvis", all others spherical with a swing cone and a range of
 // twist, about those of an agile person), mass of the links, end effectors
 // "left_heel", "left_toe_tip", "left_palm", their right ones, and "crown".
-std::shared_ptr<const Skeleton> MakeHumanoid();
+// Of another height all lengths are in proportion; `height_m` > 0.
+inline constexpr double kHumanoidHeightM = 1.75;
+std::shared_ptr<const Skeleton> MakeHumanoid(
+    double height_m = kHumanoidHeightM);
 
 // Skeletons that come with the library: "humanoid".
 std::vector<absl::string_view> BundledSkeletonNames();

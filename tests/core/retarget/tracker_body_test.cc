@@ -1,0 +1,164 @@
+#include "gelenk/retarget/tracker_body.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "gelenk/math/rotation.h"
+#include "gelenk/retarget/retarget_clip.h"
+#include "tests/testing/body_clips.h"
+#include "tests/testing/status_matchers.h"
+#include "tests/testing/walking_bvh.h"
+
+namespace gelenk {
+namespace {
+
+constexpr double kFrameTime = 0.02;
+
+// What trackers in the joints of a body see.
+TrackerFrame TrackersOn(const BodyModel& model,
+                        const Eigen::VectorXd& positions, bool with_lower) {
+  WorldTransforms at;
+  ForwardKinematics(*model.skeleton, positions, at);
+  const auto part = [&](BodyRole role) { return at[model.map.joint(role)]; };
+  TrackerFrame frame;
+  frame.head = part(BodyRole::kHead);
+  frame.hands = {part(BodyRole::kLeftHand), part(BodyRole::kRightHand)};
+  if (!with_lower) return frame;
+  frame.waist = part(BodyRole::kPelvis);
+  frame.feet = {part(BodyRole::kLeftFoot), part(BodyRole::kRightFoot)};
+  return frame;
+}
+
+// The walk of the fixture on the humanoid: an actor to be tracked.
+struct Actor {
+  std::shared_ptr<const BodyModel> model;
+  Eigen::MatrixXd positions;
+};
+Actor WalkingActor(int frames) {
+  const auto clip =
+      testing::BodyClipFromBvh(testing::WalkingBvh(frames), "walk");
+  const auto skeleton = MakeHumanoid();
+  Actor actor;
+  actor.model = *MakeBodyModel(skeleton, *ProposeJointMap(*skeleton));
+  actor.positions = RetargetClip(clip->model, actor.model, clip->positions,
+                                 clip->frame_time_s)
+                        ->positions;
+  return actor;
+}
+
+double DistanceBetween(const TrackerFrame& a, const TrackerFrame& b,
+                       bool with_lower) {
+  const auto distance = [](const auto& x, const auto& y) {
+    return (x->translation - y->translation).norm();
+  };
+  double worst = distance(a.head, b.head);
+  for (int side : kSides) {
+    worst = std::max(worst, distance(a.hands[side], b.hands[side]));
+    if (with_lower) {
+      worst = std::max(worst, distance(a.feet[side], b.feet[side]));
+    }
+  }
+  if (with_lower) worst = std::max(worst, distance(a.waist, b.waist));
+  return worst;
+}
+
+TEST(TrackerBodyTest, SixTrackersHoldHeadHandsWaistAndFeet) {
+  const Actor actor = WalkingActor(150);
+  const auto body = TrackerBody::Create();
+  ASSERT_TRUE(body.ok());
+  for (int f = 0; f < actor.positions.cols(); ++f) {
+    const TrackerFrame frame =
+        TrackersOn(*actor.model, actor.positions.col(f), true);
+    ASSERT_TRUE((*body)->Update(frame, kFrameTime).ok());
+    const TrackerFrame made =
+        TrackersOn(*(*body)->model(), (*body)->positions(), true);
+    // The posture pulls a little.
+    ASSERT_LT(DistanceBetween(frame, made, true), 0.02) << f;
+  }
+}
+
+TEST(TrackerBodyTest, ThreeTrackersMakeAWholeBodyThatStandsAndWalks) {
+  const Actor actor = WalkingActor(150);
+  const auto body = TrackerBody::Create();
+  ASSERT_TRUE(body.ok());
+  double way = 0;
+  TrackerFrame last;
+  for (int f = 0; f < actor.positions.cols(); ++f) {
+    const TrackerFrame frame =
+        TrackersOn(*actor.model, actor.positions.col(f), false);
+    ASSERT_TRUE((*body)->Update(frame, kFrameTime).ok());
+    const TrackerFrame made =
+        TrackersOn(*(*body)->model(), (*body)->positions(), true);
+    ASSERT_LT(DistanceBetween(frame, made, false), 0.03) << f;
+    // Hips below the head, feet below the hips and above the ground.
+    const Eigen::Vector3d hips = made.waist->translation;
+    ASSERT_LT(Horizontal(hips - made.head->translation).norm(), 0.25) << f;
+    for (int side : kSides) {
+      const Eigen::Vector3d foot = made.feet[side]->translation;
+      ASSERT_GT(foot.y(), 0.02) << f;
+      ASSERT_LT(foot.y(), 0.35) << f;
+      ASSERT_LT(Horizontal(foot - hips).norm(), 0.6) << f;
+    }
+    if (f > 0) {
+      way = std::max(
+          way, (made.feet[0]->translation - last.feet[0]->translation).norm());
+    }
+    last = made;
+  }
+  // No foot jumps: at most 6 m/s.
+  EXPECT_LT(way, 6 * kFrameTime);
+  EXPECT_EQ(
+      LimitExcess(*(*body)->model()->skeleton, (*body)->positions(), nullptr),
+      0);
+}
+
+TEST(TrackerBodyTest, MountsAreLearnedFromATPose) {
+  const auto skeleton = MakeHumanoid();
+  const auto body = TrackerBody::Create();
+  ASSERT_TRUE(body.ok());
+  const TrackerFrame in_joints =
+      TrackersOn(*(*body)->model(), skeleton->rest_positions(), false);
+  const RigidTransform mount = {Eigen::Quaterniond(Eigen::AngleAxisd(
+                                    1, Eigen::Vector3d(1, 2, 3) / 3.7417)),
+                                Eigen::Vector3d(0.02, 0.05, -0.1)};
+  TrackerFrame mounted = in_joints;
+  mounted.head->rotation.normalize();
+  mounted.head = *in_joints.head * mount;
+  mounted.head->rotation.normalize();
+  (*body)->Calibrate(mounted);
+  ASSERT_TRUE((*body)->Update(mounted, kFrameTime).ok());
+  const TrackerFrame made =
+      TrackersOn(*(*body)->model(), (*body)->positions(), false);
+  EXPECT_LT(DistanceBetween(in_joints, made, false), 0.03);
+}
+
+TEST(TrackerBodyTest, ALostHandIsHeldAndBadFramesChangeNothing) {
+  const auto body = TrackerBody::Create();
+  ASSERT_TRUE(body.ok());
+  TrackerFrame frame = TrackersOn(
+      *(*body)->model(), (*body)->model()->skeleton->rest_positions(), false);
+  using testing::Fails;
+  constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+  EXPECT_THAT((*body)->Update(TrackerFrame(), kFrameTime),
+              Fails(kInvalid, "head"));
+  EXPECT_THAT((*body)->Update(frame, 0), Fails(kInvalid, "dt_s"));
+  ASSERT_TRUE((*body)->Update(frame, kFrameTime).ok());
+  const Eigen::VectorXd before = (*body)->positions();
+  TrackerFrame bad = frame;
+  bad.hands[kRight]->translation.x() = std::numeric_limits<double>::infinity();
+  EXPECT_THAT((*body)->Update(bad, kFrameTime), Fails(kInvalid, "hands[1]"));
+  EXPECT_EQ((*body)->positions(), before);
+  frame.hands[kRight].reset();
+  for (int f = 0; f < 20; ++f) {
+    ASSERT_TRUE((*body)->Update(frame, kFrameTime).ok());
+  }
+  WorldTransforms at;
+  ForwardKinematics(*(*body)->model()->skeleton, (*body)->positions(), at);
+  const int hand = (*body)->model()->map.joint(BodyRole::kRightHand);
+  EXPECT_LT(at[hand].translation.x(), -0.5);
+  EXPECT_THAT(TrackerBody::Create(0.1).status(), Fails(kInvalid, "height_m"));
+}
+
+}  // namespace
+}  // namespace gelenk
