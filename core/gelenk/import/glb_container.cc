@@ -14,6 +14,7 @@ namespace {
 // chunk its length, its type, its bytes.
 constexpr absl::string_view kMagic = "glTF";
 constexpr absl::string_view kJsonChunk = "JSON";
+constexpr absl::string_view kBinaryChunk("BIN\0", 4);
 constexpr size_t kHeaderBytes = 12;
 constexpr size_t kChunkHeaderBytes = 8;
 constexpr uint32_t kVersion = 2;
@@ -57,6 +58,19 @@ absl::StatusOr<absl::string_view> JsonOfGltf(absl::string_view bytes) {
                         chunk_length, bytes.size()));
   }
   return bytes.substr(0, chunk_length);
+}
+
+absl::string_view BinaryOfGltf(absl::string_view bytes) {
+  const absl::StatusOr<absl::string_view> json = JsonOfGltf(bytes);
+  if (!json.ok() || !absl::StartsWith(bytes, kMagic)) return "";
+  bytes.remove_prefix(kHeaderBytes + kChunkHeaderBytes + json->size());
+  if (bytes.size() < kChunkHeaderBytes) return "";
+  const uint32_t length = LittleEndian(bytes);
+  if (bytes.substr(4, 4) != kBinaryChunk ||
+      length > bytes.size() - kChunkHeaderBytes) {
+    return "";
+  }
+  return bytes.substr(kChunkHeaderBytes, length);
 }
 
 }  // namespace gelenk

@@ -11,6 +11,10 @@ namespace gelenk {
 // INVALID_ARGUMENT saying what is cut off or of another version.
 absl::StatusOr<absl::string_view> JsonOfGltf(absl::string_view bytes);
 
+// The second chunk of a .glb that JsonOfGltf takes, if it is whole and binary;
+// else empty.
+absl::string_view BinaryOfGltf(absl::string_view bytes);
+
 }  // namespace gelenk
 
 #endif  // GELENK_IMPORT_GLB_CONTAINER_H_

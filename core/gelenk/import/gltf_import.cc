@@ -81,6 +81,7 @@ class GltfSkeletonBuilder {
         placements_(PlaceNodes(document)),
         ids_(kMaxIdBytes) {
     import_.warnings = joints.warnings;
+    import_.unit_m = options.unit_m;
   }
 
   absl::StatusOr<GltfImport> Build();

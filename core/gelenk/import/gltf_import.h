@@ -40,6 +40,8 @@ struct GltfImport {
   // Of each node of the document, the index of its joint; -1 for none. Names
   // may have changed, this is what binds.
   std::vector<int> joint_of_node;
+  // As the options had it.
+  double unit_m = 1;
   // What was chosen or changed: skin, names, scale, size.
   std::vector<std::string> warnings;
 };

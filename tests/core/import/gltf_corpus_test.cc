@@ -15,9 +15,13 @@
 
 #include "absl/strings/match.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/import/gltf_animation.h"
+#include "gelenk/import/gltf_clip.h"
 #include "gelenk/import/gltf_import.h"
 #include "gelenk/import/gltf_reader.h"
+#include "gelenk/import/gltf_writer.h"
 #include "gelenk/kinematics/forward_kinematics.h"
+#include "gelenk/motion/clip_frames.h"
 #include "tests/core/import/gltf_oracle.h"
 #include "tests/testing/ik_targets.h"
 #include "tests/testing/random_pose.h"
@@ -131,6 +135,39 @@ TEST(GltfCorpusTest, EveryModelStandsAndReaches) {
     ASSERT_TRUE(import.ok()) << import.status();
     ExpectRestWhereTheFileSays(GltfOracle(bytes), *import);
     ExpectLeavesAreReached(import->skeleton);
+  }
+}
+
+// Animations become clips, those of every sampler.
+TEST(GltfCorpusTest, EveryAnimationPlays) {
+  const std::vector<fs::path> models = Models(CorpusFolder());
+  if (models.empty()) {
+    GTEST_SKIP() << "SKIPPED: no models in " << CorpusFolder();
+  }
+  for (const fs::path& path : models) {
+    SCOPED_TRACE(path);
+    const std::string bytes = ReadFile(path);
+    const absl::StatusOr<GltfDocument> document = ReadGltf(bytes);
+    ASSERT_TRUE(document.ok()) << document.status();
+    const absl::StatusOr<GltfImport> import = ImportGltf(*document);
+    ASSERT_TRUE(import.ok()) << import.status();
+    const auto animations =
+        ReadGltfAnimations(bytes, *document, [&](absl::string_view uri) {
+          return absl::StatusOr<std::string>(
+              ReadFile(path.parent_path() / std::string(uri)));
+        });
+    ASSERT_TRUE(animations.ok()) << animations.status();
+    for (const GltfAnimation& animation : *animations) {
+      const absl::StatusOr<GltfClip> clip =
+          ClipFromGltf(animation, *document, *import);
+      ASSERT_TRUE(clip.ok()) << clip.status();
+      EXPECT_GT(clip->clip.duration_s(), 0);
+      EXPECT_TRUE(FramesFromClip(clip->clip).ok());
+      const absl::StatusOr<std::string> out =
+          WriteGltf(clip->clip, GltfForm::kBinary);
+      ASSERT_TRUE(out.ok()) << out.status();
+      EXPECT_TRUE(ReadGltf(*out).ok());
+    }
   }
 }
 
