@@ -1,8 +1,12 @@
-// retarget_table CLIP.bvh... : every clip on the humanoid, on the glTF bodies
-// of the same corpus and on the other clips' skeletons, as a table for docs.
+// Every clip on the humanoid, on bodies of glTF files and on the other clips'
+// skeletons, beside plain rotation copy, as the table of docs/retargeting.md.
 //
-//   retarget_table [--pairs] [--gltf FILE.glb]... CLIP.bvh...
+//   retarget_table [--pairs | --time] [--gltf FILE.glb]... CLIP.bvh...
+//
+// A row is the mean over the targets of a clip; with --pairs there is one for
+// each. --time measures warm online frames instead.
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -48,28 +52,66 @@ struct Row {
   double source_label = 0;
   double source_rule = 0;
   std::array<double, 3> label = {};
-  std::array<double, 3> turning = {};
   std::array<double, 3> rule = {};
   std::array<double, 3> penetration_mm = {};
-  std::array<double, 3> hand = {};
+  std::array<double, 3> hand_percent = {};
   std::array<double, 3> jerk = {};
-  std::array<double, 3> extra_turn = {};
+  std::array<double, 3> extra_turn_deg = {};
   std::array<double, 3> hyper = {};
-  std::array<double, 3> limit = {};
-  std::array<double, 3> limited = {};
+
+  // Every number of a row.
+  std::vector<double*> Numbers() {
+    std::vector<double*> numbers = {&contact, &source_label, &source_rule};
+    for (auto* values : {&label, &rule, &penetration_mm, &hand_percent, &jerk,
+                         &extra_turn_deg, &hyper}) {
+      for (double& value : *values) numbers.push_back(&value);
+    }
+    return numbers;
+  }
 };
+
+// Sums of rows.
+class Mean {
+ public:
+  void Add(Row row) {
+    const std::vector<double*> from = row.Numbers();
+    const std::vector<double*> to = sum_.Numbers();
+    for (size_t i = 0; i < to.size(); ++i) *to[i] += *from[i];
+    ++count_;
+  }
+  Row Value() const {
+    Row mean = sum_;
+    for (double* number : mean.Numbers()) *number /= std::max(1, count_);
+    return mean;
+  }
+  int count() const { return count_; }
+
+ private:
+  Row sum_;
+  int count_ = 0;
+};
+
+void PrintHead() {
+  std::printf(
+      "| clip | contact %% | label skate, cm/s: source / copy / online / "
+      "offline | rule skate | penetration, mm: copy / online / offline | hand "
+      "error, %% of arm: online / offline | jerk ratio: copy / online / "
+      "offline "
+      "| extra turn, degrees a frame | new hyper-extensions |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+}
 
 void Print(const std::string& name, const Row& r) {
   std::printf(
       "| %s | %.0f | %.2f / %.2f / %.2f / %.2f | %.2f / %.2f / %.2f / %.2f | "
       "%.1f / %.2f / %.2f | %.2f / %.2f | %.2f / %.2f / %.2f | "
-      "%.1f / %.1f / %.1f | %.0f / %.0f | %.4f %.0f | turn %.2f\n",
+      "%.1f / %.1f / %.1f | %.0f / %.0f |\n",
       name.c_str(), 100 * r.contact, r.source_label, r.label[0], r.label[1],
       r.label[2], r.source_rule, r.rule[0], r.rule[1], r.rule[2],
       r.penetration_mm[0], r.penetration_mm[1], r.penetration_mm[2],
-      100 * r.hand[1], 100 * r.hand[2], r.jerk[0], r.jerk[1], r.jerk[2],
-      r.extra_turn[0], r.extra_turn[1], r.extra_turn[2], r.hyper[1], r.hyper[2],
-      r.limit[1], 100 * r.limited[1], r.turning[1]);
+      r.hand_percent[1], r.hand_percent[2], r.jerk[0], r.jerk[1], r.jerk[2],
+      r.extra_turn_deg[0], r.extra_turn_deg[1], r.extra_turn_deg[2], r.hyper[1],
+      r.hyper[2]);
 }
 
 Row RowOf(const SourceClip& source, const Target& target) {
@@ -83,31 +125,50 @@ Row RowOf(const SourceClip& source, const Target& target) {
     const absl::StatusOr<RetargetRun> run =
         RunRetarget(source, target.model, way);
     if (!run.ok()) {
-      std::printf("%s\n", run.status().ToString().c_str());
+      std::fprintf(stderr, "%s > %s: %s\n", source.clip.name.c_str(),
+                   target.name.c_str(), run.status().ToString().c_str());
       continue;
     }
     row.label[k] = run->quality.skate.label_cm_s;
-    row.turning[k] = run->quality.skate.label_with_turning_cm_s;
     row.rule[k] = run->quality.skate.rule_cm_s;
     row.penetration_mm[k] = 1000 * run->quality.penetration.max_m;
-    row.hand[k] = run->hand_error;
+    row.hand_percent[k] = 100 * run->hand_error;
     row.jerk[k] = run->comparison.jerk_ratio;
-    row.extra_turn[k] = run->comparison.largest_extra_turn_deg;
+    row.extra_turn_deg[k] = run->comparison.largest_extra_turn_deg;
     row.hyper[k] = run->comparison.new_hyper_extended_frames;
-    row.limit[k] = run->limit_excess;
-    row.limited[k] = run->limited_part;
   }
   return row;
 }
 
+// The time of a warm online frame, contacts included; the best of some rounds.
+void PrintTime(const SourceClip& source, const Target& target) {
+  auto retargeter = Retargeter::Create(source.clip.model, target.model);
+  double best_us = 1e9;
+  for (int round = 0; round < 20; ++round) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int f = 0; f < source.clip.frame_count(); ++f) {
+      (void)(*retargeter)
+          ->Retarget(source.clip.positions.col(f), source.clip.frame_time_s);
+    }
+    const std::chrono::duration<double, std::micro> time =
+        std::chrono::steady_clock::now() - start;
+    best_us = std::min(best_us, time.count() / source.clip.frame_count());
+  }
+  std::printf("%s (%d joints) > %s (%d joints): %.1f us a frame\n",
+              source.clip.name.c_str(),
+              source.clip.model->skeleton->joint_count(), target.name.c_str(),
+              target.model->skeleton->joint_count(), best_us);
+}
+
 int Main(int argc, char** argv) {
   bool pairs = false;
+  bool time = false;
   std::vector<Target> targets = {HumanoidTarget()};
   std::vector<SourceClip> sources;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    if (argument == "--pairs") {
-      pairs = true;
+    if (argument == "--pairs" || argument == "--time") {
+      (argument == "--time" ? time : pairs) = true;
       continue;
     }
     if (argument == "--gltf" && i + 1 < argc) {
@@ -131,60 +192,28 @@ int Main(int argc, char** argv) {
       sources.push_back(MakeSource(*std::move(clip)));
     }
   }
-  Row mean;
-  int count = 0;
-  double worst_label = 0;
-  double worst_jerk = 0;
-  double worst_turn = 0;
-  double worst_penetration = 0;
-  double label_ratio = 0;
+  if (time) {
+    for (const SourceClip& source : sources) {
+      PrintTime(source, targets.front());
+      for (const Target& target : targets) {
+        if (target.name == source.clip.name) PrintTime(source, target);
+      }
+    }
+    return 0;
+  }
+  PrintHead();
+  Mean all;
   for (const SourceClip& source : sources) {
+    Mean of_clip;
     for (const Target& target : targets) {
       const Row row = RowOf(source, target);
       if (pairs) Print(source.clip.name + " > " + target.name, row);
-      mean.contact += row.contact;
-      mean.source_label += row.source_label;
-      mean.source_rule += row.source_rule;
-      for (int k = 0; k < 3; ++k) {
-        mean.label[k] += row.label[k];
-        mean.turning[k] += row.turning[k];
-        mean.rule[k] += row.rule[k];
-        mean.penetration_mm[k] += row.penetration_mm[k];
-        mean.hand[k] += row.hand[k];
-        mean.jerk[k] += row.jerk[k];
-        mean.extra_turn[k] += row.extra_turn[k];
-        mean.hyper[k] += row.hyper[k];
-        mean.limited[k] += row.limited[k];
-      }
-      worst_label =
-          std::max(worst_label, row.label[1] / std::max(row.source_label, .01));
-      label_ratio += row.label[1] / std::max(row.source_label, .01);
-      worst_jerk = std::max(worst_jerk, row.jerk[1]);
-      worst_turn = std::max(worst_turn, row.extra_turn[1]);
-      worst_penetration = std::max(worst_penetration, row.penetration_mm[1]);
-      ++count;
+      of_clip.Add(row);
+      all.Add(row);
     }
+    if (!pairs) Print(source.clip.name, of_clip.Value());
   }
-  for (double* value : {&mean.contact, &mean.source_label, &mean.source_rule}) {
-    *value /= count;
-  }
-  for (int k = 0; k < 3; ++k) {
-    for (auto* values : {&mean.label, &mean.turning, &mean.rule,
-                         &mean.penetration_mm, &mean.hand, &mean.jerk,
-                         &mean.extra_turn, &mean.hyper, &mean.limited}) {
-      (*values)[k] /= count;
-    }
-  }
-  Print("mean", mean);
-  std::printf(
-      "%d pairs; online: label ratio mean %.3f (of means %.3f) worst %.3f, "
-      "rule "
-      "of means %.3f, jerk worst %.2f, extra turn worst %.1f, penetration "
-      "worst "
-      "%.3f mm\n",
-      count, label_ratio / count, mean.label[1] / mean.source_label,
-      worst_label, mean.rule[1] / mean.source_rule, worst_jerk, worst_turn,
-      worst_penetration);
+  Print("**mean of " + std::to_string(all.count()) + " pairs**", all.Value());
   return 0;
 }
 
