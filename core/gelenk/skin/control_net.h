@@ -2,7 +2,7 @@
 // 64 points span: the definition that BezierVolume is a fast form of.
 //
 // A net that was sculpted by hand is an offset lattice on a control plane: it
-// rides on the plane and is evaluated by this slow path, some 180 times slower
+// rides on the plane and is evaluated by this slow path, some 40 times slower
 // than the power basis.
 #ifndef GELENK_SKIN_CONTROL_NET_H_
 #define GELENK_SKIN_CONTROL_NET_H_
