@@ -87,8 +87,8 @@ void AddTrunk(ScaledBuilder& builder) {
   AddBall({"spine", "pelvis", 0.11 * up, 0.13 * up, 50, 40, 9}, builder);
   AddBall({"chest", "spine", 0.13 * up, 0.14 * up, 50, 40, 9}, builder);
   AddBall({"upper_chest", "chest", 0.14 * up, 0.16 * up, 50, 40, 11}, builder);
-  AddBall({"neck", "upper_chest", 0.16 * up, 0.10 * up, 60, 60, 1}, builder);
-  AddBall({"head", "neck", {0, 0.10, 0.01}, 0.15 * up, 60, 60, 4}, builder);
+  AddBall({"neck", "upper_chest", 0.16 * up, 0.10 * up, 75, 75, 1}, builder);
+  AddBall({"head", "neck", {0, 0.10, 0.01}, 0.15 * up, 75, 75, 4}, builder);
   AddEnd("crown", "head", 0.15 * up, builder);
 }
 
@@ -113,9 +113,9 @@ void AddLeg(const std::string& side, double out, ScaledBuilder& builder) {
   const std::string foot = absl::StrCat(side, "_foot");
   const std::string toe = absl::StrCat(side, "_toe");
   const Vector3d down = -Vector3d::UnitY();
-  AddBall({thigh, "pelvis", {0.095 * out, -0.04, 0}, 0.43 * down, 140, 90, 8},
+  AddBall({thigh, "pelvis", {0.095 * out, -0.04, 0}, 0.43 * down, 150, 90, 8},
           builder);
-  AddBall({shin, thigh, 0.43 * down, 0.415 * down, 160, 60, 3.5}, builder);
+  AddBall({shin, thigh, 0.43 * down, 0.415 * down, 165, 60, 3.5}, builder);
   AddBall({foot, shin, 0.415 * down, {0, -0.055, 0.13}, 80, 60, 1}, builder);
   AddBall({toe, foot, {0, -0.055, 0.13}, {0, -0.02, 0.07}, 80, 45, 0.2},
           builder);

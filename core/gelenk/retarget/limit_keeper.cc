@@ -11,7 +11,8 @@ constexpr double kFootWeight = 1;
 constexpr double kFootScale_m_per_rad = 0.5;
 constexpr double kHandWeight = 0.1;
 constexpr double kPostureWeight = 1e-4;
-constexpr int kMaxIterationsAFrame = 20;
+// A stream has no time for more; they bring feet within a millimetre.
+constexpr int kMaxIterationsAFrame = 4;
 // Less is the rounding of limits.
 constexpr double kNoExcess = 1e-7;
 

@@ -57,6 +57,7 @@ Retargeter::Retargeter(std::shared_ptr<const BodyModel> source,
       rig_(target_),
       placement_(target_),
       limits_(std::move(limits)),
+      limited_(target_->skeleton->joint_count()),
       has_feet_(source_->map.HasLegs() && target_->map.HasLegs()),
       positions_(target_->reference.positions),
       last_positions_(positions_) {
@@ -165,16 +166,23 @@ void Retargeter::AimHands(const BodyPose& source) {
 }
 
 void Retargeter::MeasureErrors() {
+  const bool is_limited = report_.limit_excess > 0;
+  if (is_limited) ForwardKinematics(*target_->skeleton, positions_, limited_);
+  const auto place = [&](BodyRole role) -> Vector3d {
+    if (!is_limited) return rig_.place(role);
+    return target_->canonical_from_world *
+           limited_[target_->map.joint(role)].translation;
+  };
   for (int side : kSides) {
     report_.hand_error_m[side] = 0;
     report_.foot_error_m[side] = 0;
     if (goals_.hands[side]) {
       report_.hand_error_m[side] =
-          (rig_.place(kArmRoles[side].hand) - *goals_.hands[side]).norm();
+          (place(kArmRoles[side].hand) - *goals_.hands[side]).norm();
     }
     if (goals_.feet[side]) {
       report_.foot_error_m[side] =
-          (rig_.place(kLegRoles[side].foot) - goals_.feet[side]->ankle).norm();
+          (place(kLegRoles[side].foot) - goals_.feet[side]->ankle).norm();
     }
   }
 }
@@ -221,11 +229,11 @@ void Retargeter::Finish(const BodyPose& source, double dt_s) {
   if (options_.place_limbs) {
     AimHands(source);
     report_.pelvis_shift = placement_.Apply(goals_, dt_s, rig_);
-    MeasureErrors();
   }
   last_positions_ = positions_;
   rig_.Store(positions_);
   report_.limit_excess = options_.keep_limits ? limits_.Keep(positions_) : 0;
+  if (options_.place_limbs) MeasureErrors();
   if (!is_first_) {
     AlignHemispheres(*target_->skeleton, last_positions_, positions_);
   }

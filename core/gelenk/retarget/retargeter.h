@@ -122,6 +122,7 @@ class Retargeter {
   // What is left once the feet are aimed.
   void Finish(const BodyPose& source, double dt_s);
   void AimHands(const BodyPose& source);
+  // Of the pose that is stored: joint limits may have moved it.
   void MeasureErrors();
   // Of the ground under the target: eased, so that the body does not jump up
   // stairs.
@@ -140,6 +141,7 @@ class Retargeter {
   std::array<std::optional<FootPlanter>, 2> planters_;
   LimbPlacement placement_;
   LimitKeeper limits_;
+  WorldTransforms limited_;
   bool has_feet_;
   double ground_m_ = 0;
   bool is_first_ = true;

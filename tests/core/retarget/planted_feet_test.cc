@@ -1,0 +1,211 @@
+// Feet on uneven ground, feet that turn, a limp, and no memory taken.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "gelenk/math/rotation.h"
+#include "gelenk/retarget/humanoid.h"
+#include "gelenk/retarget/retarget_clip.h"
+#include "gelenk/skeleton/skeleton_builder.h"
+#include "tests/testing/allocation_count.h"
+#include "tests/testing/retarget_runs.h"
+#include "tests/testing/rig_family.h"
+#include "tests/testing/walking_bvh.h"
+
+namespace gelenk {
+namespace {
+
+using testing::SourceClip;
+
+constexpr double kFrameTime = 0.01;
+
+std::shared_ptr<const BodyModel> Humanoid() {
+  const auto skeleton = MakeHumanoid();
+  return *MakeBodyModel(skeleton, *ProposeJointMap(*skeleton));
+}
+
+// The humanoid with its hips at `hips`, turned by `yaw_rad`, otherwise at rest.
+Eigen::VectorXd Standing(const Skeleton& skeleton, const Eigen::Vector3d& hips,
+                         double yaw_rad) {
+  Eigen::VectorXd positions = skeleton.rest_positions();
+  positions.head<3>() = hips;
+  StoreXyzw(
+      Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitY())),
+      positions.data() + 3);
+  return positions;
+}
+
+TEST(PlantedFeetTest, FeetStandOnAHeightField) {
+  // A ramp along Z: 0.2 m a metre.
+  Eigen::MatrixXd heights(2, 61);
+  for (int k = 0; k < 61; ++k) heights.col(k).setConstant(0.02 * k);
+  RetargetOptions options;
+  options.target_ground = *HeightField::Create(heights, -3, 0, 0.1);
+  const auto clip = testing::BodyClipFromBvh(testing::WalkingBvh(200), "walk");
+  const SourceClip source = testing::MakeSource(*clip);
+  const auto target = Humanoid();
+  auto retargeter = Retargeter::Create(source.clip.model, target, options);
+  ASSERT_TRUE(retargeter.ok());
+  BodyPose pose;
+  BodyPoseReader reader(target);
+  double first_hips = 0;
+  for (int f = 0; f < source.clip.frame_count(); ++f) {
+    (*retargeter)->RetargetBody(source.poses[f], source.clip.frame_time_s);
+    reader.Read((*retargeter)->positions(), pose);
+    if (f == 0) first_hips = pose.hip_center.y();
+    for (int side : kSides) {
+      for (int point = 0; point < kFootPointCount; ++point) {
+        const Eigen::Vector3d& at = pose.foot_points[side][point];
+        ASSERT_GT(at.y() - target->planted_heights[side][point] -
+                      options.target_ground->HeightAt(at),
+                  -0.005)
+            << "frame " << f << " side " << side << " point " << point;
+      }
+    }
+  }
+  // The body climbed with the ramp.
+  EXPECT_NEAR(pose.hip_center.y() - first_hips, 0.2 * pose.hip_center.z(), 0.1);
+  EXPECT_GT(pose.hip_center.z(), 1);
+}
+
+TEST(PlantedFeetTest, AFootTurnsFreelyOnItsBall) {
+  // The whole body turns about the left ball at 60 degrees a second.
+  const auto model = Humanoid();
+  auto retargeter = Retargeter::Create(model, model);
+  ASSERT_TRUE(retargeter.ok());
+  const Skeleton& skeleton = *model->skeleton;
+  BodyPose at_rest;
+  BodyPoseReader reader(model);
+  reader.Read(skeleton.rest_positions(), at_rest);
+  const Eigen::Vector3d ball = at_rest.foot_points[kLeft][kBall];
+  const Eigen::Vector3d hips = skeleton.rest_positions().head<3>();
+  BodyPose pose;
+  double heel_turned = 0;
+  for (int f = 0; f < 150; ++f) {
+    const double yaw =
+        std::max(0.0, f * kFrameTime - 0.3) * std::numbers::pi / 3;
+    const Eigen::AngleAxisd turn(yaw, Eigen::Vector3d::UnitY());
+    const Eigen::Vector3d center = Horizontal(ball);
+    ASSERT_TRUE(
+        (*retargeter)
+            ->Retarget(Standing(skeleton, center + turn * (hips - center), yaw),
+                       kFrameTime)
+            .ok());
+    reader.Read((*retargeter)->positions(), pose);
+    // The ball stays where it stood.
+    ASSERT_LT(Horizontal(pose.foot_points[kLeft][kBall] - ball).norm(), 0.02)
+        << f;
+    const Eigen::Vector3d ahead = Horizontal(pose.foot_points[kLeft][kBall] -
+                                             pose.foot_points[kLeft][kHeel]);
+    heel_turned = std::abs(yaw - std::atan2(ahead.x(), ahead.z()));
+  }
+  // 70 degrees turned; the foot came along, but for what it lags.
+  EXPECT_LT(heel_turned, 15 * std::numbers::pi / 180);
+}
+
+// Frames in which a foot stands, by side.
+std::array<int, 2> StandingFrames(const ContactLabels& labels) {
+  std::array<int, 2> frames = {0, 0};
+  for (const FootContacts& frame : labels.frames) {
+    for (int side : kSides)
+      frames[side] += frame[side][kBall] != Contact::kNone;
+  }
+  return frames;
+}
+
+// How far the feet go at most beside the hips, forwards: left over right.
+double StrideAsymmetry(const BodyModel& model,
+                       const Eigen::MatrixXd& positions) {
+  std::array<double, 2> longest = {0, 0};
+  for (const BodyPose& pose : testing::BodyPosesOf(model, positions)) {
+    const Eigen::Quaterniond& pelvis = pose.rotation(BodyRole::kPelvis);
+    for (int side : kSides) {
+      const Eigen::Vector3d way =
+          pose.position(kLegRoles[side].foot) - pose.hip_center;
+      longest[side] = std::max(longest[side], (pelvis.conjugate() * way).z());
+    }
+  }
+  return longest[kLeft] / longest[kRight];
+}
+
+TEST(PlantedFeetTest, ALimpSurvives) {
+  // The walk with a left leg that swings forward 60 % as far.
+  const auto clip = testing::BodyClipFromBvh(testing::WalkingBvh(300), "walk");
+  ASSERT_TRUE(clip.ok());
+  Eigen::MatrixXd limping = clip->positions;
+  const Skeleton& skeleton = *clip->model->skeleton;
+  const int thigh = clip->model->map.joint(BodyRole::kLeftThigh);
+  const int row = skeleton.span(thigh).quaternion_offset;
+  for (int f = 0; f < limping.cols(); ++f) {
+    const Eigen::Quaterniond turn = QuaternionXyzw(limping.col(f).data() + row);
+    StoreXyzw(Eigen::Quaterniond::Identity().slerp(0.6, turn),
+              limping.col(f).data() + row);
+  }
+  const double wanted = StrideAsymmetry(*clip->model, limping);
+  EXPECT_LT(wanted, 0.85);
+  const auto target = Humanoid();
+  const auto offline =
+      RetargetClip(clip->model, target, limping, clip->frame_time_s);
+  ASSERT_TRUE(offline.ok());
+  EXPECT_NEAR(StrideAsymmetry(*target, offline->positions) / wanted, 1, 0.1);
+  auto retargeter = Retargeter::Create(clip->model, target);
+  ASSERT_TRUE(retargeter.ok());
+  Eigen::MatrixXd online = offline->positions;
+  for (int f = 0; f < limping.cols(); ++f) {
+    ASSERT_TRUE(
+        (*retargeter)->Retarget(limping.col(f), clip->frame_time_s).ok());
+    online.col(f) = (*retargeter)->positions();
+  }
+  EXPECT_NEAR(StrideAsymmetry(*target, online) / wanted, 1, 0.1);
+  // Feet were planted on the way.
+  const std::array<int, 2> standing = StandingFrames(offline->labels);
+  EXPECT_GT(standing[kLeft] + standing[kRight], 20);
+}
+
+TEST(PlantedFeetTest, LimitsOfTheTargetHold) {
+  // Knees that bend by 15 degrees only: the walk has 38.
+  const auto clip = testing::BodyClipFromBvh(testing::WalkingBvh(150), "walk");
+  const SourceClip source = testing::MakeSource(*clip);
+  const auto free = MakeHumanoid();
+  SkeletonBuilder builder;
+  for (Joint joint : free->joints()) {
+    if (joint.id == "left_shin") {
+      joint.limits.swing_cone_rad = 15 * std::numbers::pi / 180;
+    }
+    builder.AddJoint(std::move(joint));
+  }
+  for (const EndEffector& end : free->end_effectors()) {
+    builder.AddEndEffector(end);
+  }
+  const auto stiff = *builder.SetRestPositions(free->rest_positions()).Build();
+  const auto target = *MakeBodyModel(stiff, *ProposeJointMap(*stiff));
+  for (auto way :
+       {testing::RetargetWay::kOnline, testing::RetargetWay::kOffline}) {
+    const auto run = RunRetarget(source, target, way);
+    ASSERT_TRUE(run.ok());
+    EXPECT_GT(run->limited_part, 0.1);
+    EXPECT_LT(run->limit_excess, 1e-6);
+    EXPECT_LE(run->comparison.largest_extra_turn_deg, 25);
+  }
+}
+
+TEST(PlantedFeetTest, AWarmFrameTakesNoMemory) {
+  const auto clip = testing::BodyClipFromBvh(testing::WalkingBvh(100), "walk");
+  auto retargeter = Retargeter::Create(clip->model, Humanoid());
+  ASSERT_TRUE(retargeter.ok());
+  for (int f = 0; f < 50; ++f) {
+    ASSERT_TRUE((*retargeter)
+                    ->Retarget(clip->positions.col(f), clip->frame_time_s)
+                    .ok());
+  }
+  const int before = testing::AllocationCount();
+  for (int f = 50; f < 100; ++f) {
+    (void)(*retargeter)->Retarget(clip->positions.col(f), clip->frame_time_s);
+  }
+  EXPECT_EQ(testing::AllocationCount(), before);
+}
+
+}  // namespace
+}  // namespace gelenk
