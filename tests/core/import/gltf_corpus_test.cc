@@ -161,7 +161,8 @@ TEST(GltfCorpusTest, EveryAnimationPlays) {
       const absl::StatusOr<GltfClip> clip =
           ClipFromGltf(animation, *document, *import);
       ASSERT_TRUE(clip.ok()) << clip.status();
-      EXPECT_GT(clip->clip.duration_s(), 0);
+      // Scales move no joint; the clip says so.
+      EXPECT_TRUE(clip->clip.duration_s() > 0 || !clip->warnings.empty());
       EXPECT_TRUE(FramesFromClip(clip->clip).ok());
       const absl::StatusOr<std::string> out =
           WriteGltf(clip->clip, GltfForm::kBinary);
