@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr absl::string_view kNames[] = {"cylinder", "arm", "leg", "humanoid"};
 constexpr int kLeastVertices = 100;
-constexpr int kMostVertices = 200000;
+constexpr int kMostVertices = 100000;
 // Of the thickest limb's radius.
 constexpr double kCoarseCell = 0.25;
 

@@ -34,7 +34,7 @@ struct SkinShape {
 // sides; it stands on the ground, up is +Y, it looks along +Z.
 absl::Span<const absl::string_view> SkinShapeNames();
 
-// `vertex_count` is what the mesh has about, 100 to 200,000. NOT_FOUND lists
+// `vertex_count` is what the mesh has about, 100 to 100,000. NOT_FOUND lists
 // the names, INVALID_ARGUMENT the range.
 absl::StatusOr<SkinShape> MakeSkinShape(absl::string_view name,
                                         int vertex_count = 10000);

@@ -39,6 +39,14 @@ absl::Status CheckBinding(const VolumeRig& rig, const TriangleMesh& mesh,
   return absl::OkStatus();
 }
 
+bool HaveSameRest(const VolumeRig& a, const VolumeRig& b) {
+  return std::equal(a.rest().all_planes().begin(), a.rest().all_planes().end(),
+                    b.rest().all_planes().begin(), b.rest().all_planes().end(),
+                    [](const ControlPlane& p, const ControlPlane& q) {
+                      return p.columns == q.columns;
+                    });
+}
+
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const LayeredSkin>> LayeredSkin::Create(
@@ -68,6 +76,7 @@ absl::StatusOr<std::shared_ptr<const LayeredSkin>> LayeredSkin::WithMuscles(
   absl::StatusOr<std::shared_ptr<const VolumeRig>> rig =
       rig_->WithMuscles(muscles);
   if (!rig.ok()) return rig.status();
+  if (HaveSameRest(*rig_, **rig)) return Create(*rig, mesh_, binding_);
   // A mitre changes the volumes of a bent rest: bind again.
   absl::StatusOr<SkinBinding> binding =
       BindMesh(**rig, mesh_, binding_->assignments);

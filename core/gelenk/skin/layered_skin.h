@@ -35,7 +35,8 @@ class LayeredSkin : public Skin {
   const SkinBinding& binding() const { return *binding_; }
   const TriangleMesh& mesh() const { return mesh_; }
 
-  // The same skin on other muscles.
+  // The same skin on other muscles, with the same binding unless a fullness
+  // changes a bent rest; then bound anew, assignments kept.
   absl::StatusOr<std::shared_ptr<const LayeredSkin>> WithMuscles(
       const SkinMuscles& muscles) const;
 
