@@ -39,6 +39,22 @@ absl::Status CheckBinding(const VolumeRig& rig, const TriangleMesh& mesh,
   return absl::OkStatus();
 }
 
+// Whole blocks for `counts` of each volume, which become the first slots.
+std::vector<kernel::VolumeRun> RunsOf(std::vector<int>& counts,
+                                      int* block_count) {
+  std::vector<kernel::VolumeRun> runs;
+  *block_count = 0;
+  for (size_t volume = 0; volume < counts.size(); ++volume) {
+    const int blocks = BlocksFor(counts[volume]);
+    counts[volume] = *block_count * kVerticesPerBlock;
+    if (blocks == 0) continue;
+    runs.push_back(
+        {static_cast<int>(volume), *block_count, *block_count + blocks});
+    *block_count += blocks;
+  }
+  return runs;
+}
+
 bool HaveSameRest(const VolumeRig& a, const VolumeRig& b) {
   return std::equal(a.rest().all_planes().begin(), a.rest().all_planes().end(),
                     b.rest().all_planes().begin(), b.rest().all_planes().end(),
@@ -105,14 +121,7 @@ LayeredSkin::Slots LayeredSkin::SortByVolume(const VolumeRig& rig,
   std::vector<int> next(rig.volume_count(), 0);
   for (const VertexBinding& vertex : binding.vertices) ++next[vertex.volume];
   Slots slots;
-  for (int volume = 0; volume < rig.volume_count(); ++volume) {
-    const int blocks = BlocksFor(next[volume]);
-    next[volume] = slots.block_count * kVerticesPerBlock;
-    if (blocks == 0) continue;
-    slots.runs.push_back(
-        {volume, slots.block_count, slots.block_count + blocks});
-    slots.block_count += blocks;
-  }
+  slots.runs = RunsOf(next, &slots.block_count);
   for (const VertexBinding& vertex : binding.vertices) {
     slots.of_vertices.push_back(next[vertex.volume]++);
   }
@@ -134,6 +143,35 @@ void LayeredSkin::FillBlocks() {
                   Vector3d(vertex.at.u, vertex.at.s, vertex.at.t).cast<float>(),
                   normal.cast<float>());
     if (vertex.share_count > 0) AddShared(v);
+  }
+  SortParts();
+}
+
+void LayeredSkin::SortParts() {
+  std::vector<int> next(rig_->volume_count(), 0);
+  for (const VolumeShare& part : parts_) ++next[part.volume];
+  part_runs_ = RunsOf(next, &part_block_count_);
+  part_rows_.Resize(part_block_count_, kernel::kPartRows);
+  for (const VolumeShare& part : parts_) {
+    const int slot = next[part.volume]++;
+    part_offsets_.push_back(slot / kVerticesPerBlock * kernel::kPartSumRows *
+                                kVerticesPerBlock +
+                            slot % kVerticesPerBlock);
+    const double numbers[kernel::kPartRows] = {part.at.u,
+                                               part.at.s,
+                                               part.at.t,
+                                               part.coordinate_slopes[0][0],
+                                               part.coordinate_slopes[0][1],
+                                               part.coordinate_slopes[0][2],
+                                               part.coordinate_slopes[1][0],
+                                               part.coordinate_slopes[1][1],
+                                               part.coordinate_slopes[1][2],
+                                               part.share,
+                                               part.share_slopes[0],
+                                               part.share_slopes[1]};
+    for (int row = 0; row < kernel::kPartRows; ++row) {
+      part_rows_.at(slot, row) = static_cast<float>(numbers[row]);
+    }
   }
 }
 
@@ -183,13 +221,38 @@ void LayeredSkin::DeformShared(const SharedVertex& shared,
   *normal = tangents[0].cross(tangents[1]).normalized();
 }
 
+void LayeredSkin::DeformParts(SkinWorkspace& workspace) const {
+  if (shared_.empty()) return;
+  workspace.parts.Resize(part_block_count_, kernel::kPartSumRows);
+  functions().deform_parts(
+      {workspace.coefficients.data(), part_runs_.data(),
+       static_cast<int>(part_runs_.size()), part_rows_.data()},
+      workspace.parts.data());
+}
+
+void LayeredSkin::SumParts(const SharedVertex& shared,
+                           const SkinWorkspace& workspace,
+                           Eigen::Vector3f* position,
+                           Eigen::Vector3f* normal) const {
+  Eigen::Matrix3f sum = Eigen::Matrix3f::Zero();
+  for (int i = 0; i < shared.part_count; ++i) {
+    const float* from =
+        workspace.parts.data() + part_offsets_[shared.first_part + i];
+    for (int row = 0; row < kernel::kPartSumRows; ++row) {
+      sum.data()[row] += from[row * kVerticesPerBlock];
+    }
+  }
+  *position = sum.col(0);
+  *normal = sum.col(1).cross(sum.col(2)).normalized();
+}
+
 void LayeredSkin::FillCoefficients(const VolumeFrame& frame,
                                    SkinWorkspace& workspace) const {
   workspace.coefficients.resize(rig_->volume_count());
-  for (const kernel::VolumeRun& run : runs_) {
+  for (int volume = 0; volume < rig_->volume_count(); ++volume) {
     for (int power = 0; power < 4; ++power) {
-      const Matrix3d& columns = frame.volume(run.volume).coefficient(power);
-      float* to = workspace.coefficients[run.volume].powers[power];
+      const Matrix3d& columns = frame.volume(volume).coefficient(power);
+      float* to = workspace.coefficients[volume].powers[power];
       for (int i = 0; i < 9; ++i) {
         to[i] = static_cast<float>(columns.data()[i]);
       }
@@ -215,10 +278,11 @@ void LayeredSkin::DeformIn(const VolumeFrame& frame, SkinWorkspace& workspace,
   FillCoefficients(frame, workspace);
   blocks.Resize(block_count());
   functions().deform(LayoutIn(workspace), blocks.data());
+  DeformParts(workspace);
   for (const SharedVertex& shared : shared_) {
-    Vector3d position, normal;
-    DeformShared(shared, frame, &position, &normal);
-    blocks.Set(shared.slot, position.cast<float>(), normal.cast<float>());
+    Eigen::Vector3f position, normal;
+    SumParts(shared, workspace, &position, &normal);
+    blocks.Set(shared.slot, position, normal);
   }
 }
 
@@ -239,6 +303,7 @@ void LayeredSkin::DeformQuantizedIn(const VolumeFrame& frame,
   const kernel::QuantizationGrid grid = GridOf(blocks.box);
   functions().deform_quantized(LayoutIn(workspace), grid, blocks.data());
   if (shared_.empty()) return;
+  DeformParts(workspace);
   // Sixteen at a time, and each to its place.
   workspace.blocks.Resize(1);
   QuantizedBlocks& sixteen = workspace.quantized;
@@ -246,10 +311,9 @@ void LayeredSkin::DeformQuantizedIn(const VolumeFrame& frame,
   for (size_t first = 0; first < shared_.size(); first += kVerticesPerBlock) {
     const size_t end = std::min(first + kVerticesPerBlock, shared_.size());
     for (size_t i = first; i < end; ++i) {
-      Vector3d position, normal;
-      DeformShared(shared_[i], frame, &position, &normal);
-      workspace.blocks.Set(static_cast<int>(i - first), position.cast<float>(),
-                           normal.cast<float>());
+      Eigen::Vector3f position, normal;
+      SumParts(shared_[i], workspace, &position, &normal);
+      workspace.blocks.Set(static_cast<int>(i - first), position, normal);
     }
     functions().quantize(workspace.blocks.data(), 1, grid, sixteen.data());
     for (size_t i = first; i < end; ++i) {
@@ -291,7 +355,9 @@ size_t LayeredSkin::ByteSize() const {
          static_cast<size_t>(block_count()) * kernel::kBlockFloats *
              sizeof(float) +
          shared_.size() * sizeof(SharedVertex) +
-         parts_.size() * sizeof(VolumeShare);
+         parts_.size() * sizeof(VolumeShare) +
+         static_cast<size_t>(part_block_count_) * kernel::kPartRows *
+             kVerticesPerBlock * sizeof(float);
 }
 
 }  // namespace gelenk

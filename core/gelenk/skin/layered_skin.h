@@ -2,8 +2,8 @@
 //
 // Vertices are sorted by their volumes once, into blocks of sixteen, and
 // deformed by a kernel in single precision within 1e-6 of the size of the
-// figure; the few near a branch, which several volumes share, follow one by
-// one. Normals are exact: those of the deformed surface.
+// figure; the few near a branch, which several volumes share, follow by a
+// kernel of their own. Normals are exact: those of the deformed surface.
 #ifndef GELENK_SKIN_LAYERED_SKIN_H_
 #define GELENK_SKIN_LAYERED_SKIN_H_
 
@@ -95,8 +95,13 @@ class LayeredSkin : public Skin {
   static Slots SortByVolume(const VolumeRig& rig, const SkinBinding& binding);
   void FillBlocks();
   void AddShared(int vertex);
+  void SortParts();
   void DeformShared(const SharedVertex& shared, const VolumeFrame& frame,
                     Eigen::Vector3d* position, Eigen::Vector3d* normal) const;
+  // All parts by the kernel, then the sums of one vertex.
+  void DeformParts(SkinWorkspace& workspace) const;
+  void SumParts(const SharedVertex& shared, const SkinWorkspace& workspace,
+                Eigen::Vector3f* position, Eigen::Vector3f* normal) const;
   void FillCoefficients(const VolumeFrame& frame,
                         SkinWorkspace& workspace) const;
 
@@ -108,6 +113,10 @@ class LayeredSkin : public Skin {
   VertexBlocks vertices_;  // u, s, t and the normal's components
   std::vector<SharedVertex> shared_;
   std::vector<VolumeShare> parts_;
+  std::vector<kernel::VolumeRun> part_runs_;
+  BlockRows part_rows_;  // parts_ sorted by volume, as kernel::kPartRows has it
+  int part_block_count_ = 0;
+  std::vector<int> part_offsets_;  // where the kernel's first sum of each is
 };
 
 }  // namespace gelenk

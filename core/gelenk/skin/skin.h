@@ -38,6 +38,7 @@ struct SkinWorkspace {
   std::vector<float> sums;
   VertexBlocks blocks;
   QuantizedBlocks quantized;
+  BlockRows parts;
 };
 
 class Skin {

@@ -10,7 +10,7 @@
 // Coordinates in the volumes give back the mesh exactly at the rest pose.
 //
 // Errors: INVALID_ARGUMENT that lists what is wrong with the mesh or with the
-// assignments. Cost: some 10 us a vertex of a body; more with more links.
+// assignments. Cost: some 3 us a vertex with 20 links, linear in the links.
 #ifndef GELENK_SKIN_SKIN_BINDING_H_
 #define GELENK_SKIN_SKIN_BINDING_H_
 

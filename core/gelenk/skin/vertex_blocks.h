@@ -21,6 +21,35 @@ inline int BlocksFor(int vertex_count) {
   return (vertex_count + kVerticesPerBlock - 1) / kVerticesPerBlock;
 }
 
+// Blocks of any number of rows of sixteen floats, 64-byte aligned.
+class BlockRows {
+ public:
+  // Allocates only to grow; new rows are zero.
+  void Resize(int block_count, int rows_per_block) {
+    rows_per_block_ = rows_per_block;
+    rows_.resize(static_cast<size_t>(block_count) * rows_per_block);
+  }
+
+  float* data() { return rows_.data()->floats; }
+  const float* data() const { return rows_.data()->floats; }
+  float& at(int slot, int row) {
+    return RowOf(slot, row).floats[slot % kVerticesPerBlock];
+  }
+
+ private:
+  struct alignas(64) Row {
+    float floats[kVerticesPerBlock];
+  };
+  Row& RowOf(int slot, int row) {
+    return rows_[static_cast<size_t>(slot / kVerticesPerBlock) *
+                     rows_per_block_ +
+                 row];
+  }
+
+  std::vector<Row> rows_;
+  int rows_per_block_ = 1;
+};
+
 class VertexBlocks {
  public:
   // Allocates only to grow; new slots are zero.

@@ -18,6 +18,17 @@ struct Deformed {
   float nx, ny, nz;
 };
 
+// The plane at u and its derivative by u, by Horner's rule at once.
+GELENK_INLINE void PlaneAt(const VolumeCoefficients& volume, float u, float* p,
+                           float* d) {
+  for (int i = 0; i < 9; ++i) {
+    const float third = volume.powers[3][i] * u + volume.powers[2][i];
+    const float second = third * u + volume.powers[1][i];
+    p[i] = second * u + volume.powers[0][i];
+    d[i] = (volume.powers[3][i] * u + third) * u + second;
+  }
+}
+
 // `in` points to the vertex' first row.
 GELENK_INLINE Deformed DeformVertex(const VolumeCoefficients& volume,
                                     const float* in) {
@@ -27,15 +38,9 @@ GELENK_INLINE Deformed DeformVertex(const VolumeCoefficients& volume,
   const float nu = in[3 * kBlockLanes];
   const float ns = in[4 * kBlockLanes];
   const float nt = in[5 * kBlockLanes];
-  // The plane at u and its derivative, by Horner's rule at once.
   float p[9];
   float d[9];
-  for (int i = 0; i < 9; ++i) {
-    const float third = volume.powers[3][i] * u + volume.powers[2][i];
-    const float second = third * u + volume.powers[1][i];
-    p[i] = second * u + volume.powers[0][i];
-    d[i] = (volume.powers[3][i] * u + third) * u + second;
-  }
+  PlaneAt(volume, u, p, d);
   const float* a = p + 3;
   const float* b = p + 6;
   const float fx = d[0] + s * d[3] + t * d[6];
@@ -167,6 +172,43 @@ void DeformQuantized(const DeformLayout& layout, const QuantizationGrid& grid,
   }
 }
 
+void DeformParts(const DeformLayout& layout, float* __restrict out) {
+  for (int r = 0; r < layout.run_count; ++r) {
+    const VolumeRun& run = layout.runs[r];
+    const VolumeCoefficients volume = layout.volumes[run.volume];
+    for (int b = run.first_block; b < run.end_block; ++b) {
+      const float* from =
+          layout.vertices + int64_t{kPartRows} * kBlockLanes * b;
+      float* to = out + int64_t{kPartSumRows} * kBlockLanes * b;
+#pragma omp simd
+      for (int lane = 0; lane < kBlockLanes; ++lane) {
+        const float* in = from + lane;
+        float p[9];
+        float d[9];
+        PlaneAt(volume, in[0], p, d);
+        const float s = in[1 * kBlockLanes];
+        const float t = in[2 * kBlockLanes];
+        const float share = in[9 * kBlockLanes];
+        for (int i = 0; i < 3; ++i) {
+          const float f = p[i] + s * p[3 + i] + t * p[6 + i];
+          const float f_u = d[i] + s * d[3 + i] + t * d[6 + i];
+          const float first = f_u * in[3 * kBlockLanes] +
+                              p[3 + i] * in[4 * kBlockLanes] +
+                              p[6 + i] * in[5 * kBlockLanes];
+          const float second = f_u * in[6 * kBlockLanes] +
+                               p[3 + i] * in[7 * kBlockLanes] +
+                               p[6 + i] * in[8 * kBlockLanes];
+          to[i * kBlockLanes + lane] = share * f;
+          to[(3 + i) * kBlockLanes + lane] =
+              share * first + in[10 * kBlockLanes] * f;
+          to[(6 + i) * kBlockLanes + lane] =
+              share * second + in[11 * kBlockLanes] * f;
+        }
+      }
+    }
+  }
+}
+
 void Quantize(const float* blocks, int block_count,
               const QuantizationGrid& grid, uint8_t* out) {
   for (int b = 0; b < block_count; ++b) {
@@ -177,6 +219,7 @@ void Quantize(const float* blocks, int block_count,
 
 }  // namespace
 
-extern const DeformFunctions kDeform = {Deform, DeformQuantized, Quantize};
+extern const DeformFunctions kDeform = {Deform, DeformQuantized, DeformParts,
+                                        Quantize};
 
 }  // namespace gelenk::kernel::GELENK_KERNEL_LEVEL

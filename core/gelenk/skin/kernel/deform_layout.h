@@ -60,9 +60,19 @@ using DeformQuantizedFunction = void (*)(const DeformLayout& layout,
 using QuantizeFunction = void (*)(const float* blocks, int block_count,
                                   const QuantizationGrid& grid, uint8_t* out);
 
+// What one volume has of vertices that several share. Read are kPartRows rows:
+// u, s, t; the slopes of (u, s, t) along the first tangent of the surface at
+// rest, then along the second; the share; its slopes along the two. Written are
+// kPartSumRows rows, to be summed over the volumes: of the position, and of the
+// two tangents. `vertices` of the layout are such rows.
+inline constexpr int kPartRows = 12;
+inline constexpr int kPartSumRows = 9;
+using DeformPartsFunction = void (*)(const DeformLayout& layout, float* out);
+
 struct DeformFunctions {
   DeformFunction deform;
   DeformQuantizedFunction deform_quantized;
+  DeformPartsFunction deform_parts;
   QuantizeFunction quantize;
 };
 
