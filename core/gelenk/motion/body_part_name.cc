@@ -23,6 +23,11 @@ constexpr Words<3> kHipsWords = {"hips", "hip", "pelvis"};
 constexpr Words<1> kRootWords = {"root"};
 constexpr Words<1> kHeadWords = {"head"};
 
+// Limbs that have no part here, but whose side may be glued to them.
+constexpr Words<12> kLimbWords = {"arm",   "forearm", "elbow", "shoulder",
+                                  "shldr", "collar",  "leg",   "thigh",
+                                  "shin",  "knee",    "toe",   "uparm"};
+
 // A name with one of these is another thing near the part.
 constexpr Words<47> kOtherWords = {
     "thumb",     "index",      "middle",     "mid",       "ring",
@@ -81,8 +86,11 @@ BodyPartName ReadGlued(absl::string_view word) {
     const auto& prefixes = side == BodySide::kLeft ? kLeftWords : kRightWords;
     for (absl::string_view prefix : prefixes) {
       if (!absl::StartsWith(word, prefix)) continue;
-      const BodyPart part = PartOf(absl::StripPrefix(word, prefix));
-      if (part != BodyPart::kOther) return {side, part};
+      const absl::string_view rest = absl::StripPrefix(word, prefix);
+      const BodyPart part = PartOf(rest);
+      if (part != BodyPart::kOther || Contains(kLimbWords, rest)) {
+        return {side, part};
+      }
     }
   }
   return {};

@@ -167,16 +167,19 @@ int SideByNames(const Skeleton& skeleton, const std::vector<int>& chain) {
 }
 
 // Where the body's left is in the rest pose.
-Eigen::Vector3d LeftByShape(const Tree& tree, const LimbPair& legs,
-                            const LimbPair& arms, int one_foot,
-                            int other_foot) {
+Eigen::Vector3d LeftByShape(const Skeleton& skeleton, const Tree& tree,
+                            const LimbPair& legs, const LimbPair& arms,
+                            int one_foot, int other_foot) {
   const Eigen::Vector3d feet = (tree.At(one_foot) + tree.At(other_foot)) / 2;
   const Eigen::Vector3d up = (tree.At(arms.meeting) - feet).normalized();
-  // Toes, or by the custom of most rigs +Z.
+  // Toes, or by the custom of most rigs +Z; of robots, whose up is +Z, +X.
   Eigen::Vector3d forward =
       tree.At(legs.first.back()) + tree.At(legs.second.back()) - 2 * feet;
   forward -= forward.dot(up) * up;
-  if (forward.norm() < 1e-3 * legs.length) forward = Eigen::Vector3d::UnitZ();
+  if (forward.norm() < 1e-3 * legs.length) {
+    const bool is_z_up = skeleton.up().z() > 0.5;
+    forward = is_z_up ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
+  }
   return up.cross(forward);
 }
 
@@ -243,8 +246,8 @@ BodyParts FindBodyPartsByShape(const Skeleton& skeleton) {
   const auto end_of = [&](const std::vector<int>& chain) {
     return WristOrAnkle(skeleton, tree, chain);
   };
-  const Eigen::Vector3d left =
-      LeftByShape(tree, legs, arms, end_of(legs.first), end_of(legs.second));
+  const Eigen::Vector3d left = LeftByShape(
+      skeleton, tree, legs, arms, end_of(legs.first), end_of(legs.second));
   PutLeftFirst(skeleton, tree, left, legs);
   PutLeftFirst(skeleton, tree, left, arms);
   parts.hips = legs.meeting;

@@ -189,9 +189,15 @@ class BodyModelMaker {
            (At(joint(to)) - At(joint(from))).stableNormalized();
   }
 
-  void Straighten(BodyRole role, const Vector3d& from, const Vector3d& to) {
+  // Of a lower bone: first the turn of the upper one, then the bend straight.
+  Quaterniond StraightenOn(const Quaterniond& upper, BodyRole from, BodyRole to,
+                           const Vector3d& wanted) const {
+    return ShortestRotation(upper * BoneDirection(from, to), wanted) * upper;
+  }
+
+  void Turn(BodyRole role, const Quaterniond& turn) {
     Quaterniond& anatomy = model_.anatomy[joint(role)];
-    anatomy = ShortestRotation(from, to) * anatomy;
+    anatomy = turn * anatomy;
   }
 
   void TakeAnatomy() {
@@ -209,16 +215,21 @@ class BodyModelMaker {
       const LegRoles& leg = kLegRoles[side];
       const ArmRoles& arm = kArmRoles[side];
       if (model_.map.HasLeg(side)) {
-        Straighten(leg.thigh, BoneDirection(leg.thigh, leg.shin), down);
-        Straighten(leg.shin, BoneDirection(leg.shin, leg.foot), down);
+        const Quaterniond thigh =
+            ShortestRotation(BoneDirection(leg.thigh, leg.shin), down);
+        const Quaterniond shin = StraightenOn(thigh, leg.shin, leg.foot, down);
+        Turn(leg.thigh, thigh);
+        Turn(leg.shin, shin);
       }
       if (model_.map.HasArm(side)) {
         const Vector3d outwards = (side == kLeft ? 1 : -1) * Vector3d::UnitX();
-        const Vector3d forearm = BoneDirection(arm.forearm, arm.hand);
-        Straighten(arm.upper_arm, BoneDirection(arm.upper_arm, arm.forearm),
-                   outwards);
-        Straighten(arm.forearm, forearm, outwards);
-        Straighten(arm.hand, forearm, outwards);
+        const Quaterniond upper_arm = ShortestRotation(
+            BoneDirection(arm.upper_arm, arm.forearm), outwards);
+        const Quaterniond forearm =
+            StraightenOn(upper_arm, arm.forearm, arm.hand, outwards);
+        Turn(arm.upper_arm, upper_arm);
+        Turn(arm.forearm, forearm);
+        Turn(arm.hand, forearm);
       }
       if (model_.map.HasLeg(side)) PointForward(side);
     }
@@ -231,6 +242,11 @@ class BodyModelMaker {
     const int toe = joint(kLegRoles[side].toe);
     if (toe >= 0) return reference_[foot].Inverse() * At(toe);
     Vector3d ball = Vector3d::Zero();
+    for (int i = foot + 1; i < skeleton().joint_count(); ++i) {
+      if (skeleton().span(i).parent != foot) continue;
+      const Vector3d place = reference_[foot].Inverse() * At(i);
+      if (place.norm() > ball.norm()) ball = place;
+    }
     for (const EndEffector& effector : skeleton().end_effectors()) {
       if (skeleton().FindJoint(effector.joint_id) != foot) continue;
       if (IsHeel(effector)) continue;

@@ -21,6 +21,8 @@ namespace {
 // What a guess by shape, or a limb that scores 1, takes from certainty.
 constexpr double kShapeDoubt = 0.3;
 constexpr double kLimbDoubt = 0.2;
+// Joints of one wrist or ankle are nearer than this part of the body's extent.
+constexpr double kMaxGroupPart = 0.07;
 
 // Whether the user has spoken, by role.
 using Given = std::array<bool, kBodyRoleCount>;
@@ -34,6 +36,7 @@ class JointMapProposal {
     ForwardKinematics(skeleton, skeleton.rest_positions(), world_from_joints);
     for (const RigidTransform& world_from_joint : world_from_joints) {
       points_.push_back(world_from_joint.translation);
+      extent_ = std::max(extent_, (points_.back() - points_[0]).norm());
     }
   }
 
@@ -75,10 +78,33 @@ class JointMapProposal {
 
   void TakeEnd(BodyRole role, int joint, BodyPart part) {
     if (joint < 0) return;
+    const int end = LastOfGroup(joint);
     const bool is_named =
         ReadBodyPartName(skeleton_.joint(joint).id).part == part;
-    Set(role, joint, is_named ? 1 : 1 - kShapeDoubt,
+    Set(role, end, is_named ? 1 : 1 - kShapeDoubt,
         is_named ? RoleEvidence::kNames : RoleEvidence::kShape);
+  }
+
+  // Robots have wrists and ankles of several joints close together: the last
+  // one moves the hand or the foot.
+  int LastOfGroup(int joint) const {
+    while (skeleton_.joint(joint).type == JointType::kRevolute) {
+      int next = -1;
+      for (int i = joint + 1; i < skeleton_.joint_count(); ++i) {
+        if (skeleton_.span(i).parent != joint ||
+            skeleton_.joint(i).type != JointType::kRevolute) {
+          continue;
+        }
+        if (next >= 0) return joint;
+        next = i;
+      }
+      if (next < 0 ||
+          (points_[next] - points_[joint]).norm() > kMaxGroupPart * extent_) {
+        return joint;
+      }
+      joint = next;
+    }
+    return joint;
   }
 
   // The joint in which both ends of a pair meet; that of one when the other is
@@ -139,12 +165,13 @@ class JointMapProposal {
     Set(leg.toe, toe, ConfidenceOf(leg.foot), RoleEvidence::kTopology);
   }
 
-  // The first joint of the foot that is elsewhere and no heel; one that is
-  // called toe or ball before others.
+  // The first joint of the foot that moves, is elsewhere and is no heel; one
+  // that is called toe or ball before others.
   int ToeBelow(int foot) const {
     int toe = -1;
     for (int i = foot + 1; i < skeleton_.joint_count(); ++i) {
       if (skeleton_.span(i).parent != foot) continue;
+      if (skeleton_.joint(i).type == JointType::kFixed) continue;
       if ((points_[i] - points_[foot]).isZero()) continue;
       const std::string name = absl::AsciiStrToLower(skeleton_.joint(i).id);
       if (absl::StrContains(name, "heel")) continue;
@@ -206,6 +233,8 @@ class JointMapProposal {
   JointMap map_;
   const Given& given_;
   std::vector<Eigen::Vector3d> points_;
+  // The farthest joint from the root.
+  double extent_ = 0;
   int named_hips_ = -1;
 };
 

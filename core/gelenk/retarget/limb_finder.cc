@@ -27,6 +27,7 @@ constexpr Proportions kArmProportions = {0.93, 0.3};
 constexpr double kSkippedJointScore = 0.3;
 // Of equal pairs that nearer to the end.
 constexpr double kChainLengthScore = 0.001;
+constexpr double kLastHingeScore = 1e-4;
 
 // Letters and digits of the name behind its scope, in small letters: "lowerarm"
 // for "DEF-lower_arm".
@@ -57,11 +58,13 @@ double ArmNameScore(absl::string_view upper, absl::string_view next,
   double score = 0;
   if (HasAny(upper, {"collar", "clav"})) score += 0.8;
   if (HasAny(upper, {"shoulder"}) && HasAny(next, {"arm"}) &&
-      !IsForearm(next)) {
+      !HasAny(next, {"shoulder"}) && !IsForearm(next)) {
     score += 0.8;
   }
   if (HasAny(upper, {"upperarm", "uparm", "shldr"})) score -= 0.15;
   if (IsForearm(middle)) score -= 0.3;
+  // Robots have several joints at a shoulder and at a wrist.
+  if (IsForearm(upper) || HasAny(middle, {"wrist", "shoulder"})) score += 0.5;
   return score;
 }
 
@@ -72,7 +75,15 @@ double LegNameScore(absl::string_view upper, absl::string_view middle) {
   if (HasAny(middle, {"knee", "shin", "calf", "lowerleg", "lowleg"})) {
     score -= 0.3;
   }
+  if (HasAny(upper, {"knee"}) || HasAny(middle, {"ankle"})) score += 0.5;
   return score;
+}
+
+// A helper that shares a limb's twist; the rolls of robots are joints like
+// others.
+bool IsTwist(const Skeleton& skeleton, int joint, absl::string_view name) {
+  return VelocityCount(skeleton.joint(joint).type) > 1 &&
+         HasAny(name, {"twist", "roll"});
 }
 
 double LengthOf(absl::Span<const Eigen::Vector3d> points,
@@ -127,8 +138,12 @@ std::optional<LimbJoints> FindLimb(const Skeleton& skeleton,
       score += kind == LimbKind::kLeg
                    ? LegNameScore(names[i], names[k])
                    : ArmNameScore(names[i], names[i + 1], names[k]);
-      if (HasAny(names[i], {"twist", "roll"}) ||
-          HasAny(names[k], {"twist", "roll"})) {
+      // Of several hinges at one place the last one moves the bone.
+      if (VelocityCount(skeleton.joint(chain[k]).type) == 1) {
+        score -= kLastHingeScore * static_cast<double>(k);
+      }
+      if (IsTwist(skeleton, chain[i], names[i]) ||
+          IsTwist(skeleton, chain[k], names[k])) {
         score += 1;
       }
       if (score < best.score) best = {chain[i], chain[k], score};

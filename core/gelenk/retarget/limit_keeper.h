@@ -1,19 +1,22 @@
-// Holds a retargeted pose inside the joint limits of its skeleton.
+// Makes a retargeted pose one that the skeleton can take.
 //
-// A pose inside them stays as it is, for the price of a look. One that breaks
-// them is moved to the nearest allowed numbers and solved again, limits inside
-// the step (LevenbergMarquardtSolver): the feet first, then the hands, the rest
-// as near to the wanted pose as that allows.
+// Of ball joints inside their limits a pose stays as it is, for the price of a
+// look. One that breaks limits is moved to the nearest allowed numbers and
+// solved again, limits inside the step (LevenbergMarquardtSolver): the feet
+// first, then the hands, the rest as near to the wanted pose as that allows.
+// Where roles hang on joints of a single axis, as on robots, every frame is
+// solved, from the one before, with the orientations of the bones as goals
+// beside.
 #ifndef GELENK_RETARGET_LIMIT_KEEPER_H_
 #define GELENK_RETARGET_LIMIT_KEEPER_H_
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/retarget/body_model.h"
+#include "gelenk/retarget/rig_pose.h"
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
@@ -24,33 +27,41 @@ class LimitKeeper {
   static absl::StatusOr<LimitKeeper> Create(
       std::shared_ptr<const BodyModel> target);
 
-  // Whether any joint of the skeleton is limited.
-  bool HasLimits() const { return has_limits_; }
+  void Reset() { is_first_ = true; }
 
-  // Returns by how much `positions` broke the limits at worst, rad or m; 0
-  // inside. Allocates nothing once it has solved.
-  double Keep(VectorView positions);
+  // Whether roles hang on single axes: then every frame is solved.
+  bool SolvesEveryFrame() const { return solves_every_frame_; }
+
+  // `positions` are those that `rig` stored. Returns by how much they broke the
+  // limits at worst, rad or m; 0 inside. With `keep_limits` off only robots are
+  // solved. Allocates nothing once it has solved.
+  double Keep(const RigPose& rig, bool keep_limits, VectorView positions);
 
  private:
-  struct EndGoal {
-    int goal;
+  enum class Aim { kPose, kPosition, kRotation };
+  struct PartGoal {
     int joint;
-    bool has_rotation;
+    Aim aim;
   };
 
   LimitKeeper(std::shared_ptr<const BodyModel> target, IkProblem problem,
-              std::vector<EndGoal> ends, int posture);
+              std::vector<PartGoal> parts, bool solves_every_frame);
+
+  void AimParts(const RigPose& rig, const ConstVectorView& posture);
+  void Solve(VectorView positions);
 
   std::shared_ptr<const BodyModel> target_;
-  bool has_limits_;
   IkProblem problem_;
-  std::vector<EndGoal> ends_;
-  int posture_;
+  // One for each goal but the last, which is the posture.
+  std::vector<PartGoal> parts_;
+  bool solves_every_frame_;
+  bool has_limits_;
+  bool is_first_ = true;
   LevenbergMarquardtSolver solver_;
   SolverOptions options_;
   SolveReport report_;
-  WorldTransforms wanted_;
   GoalTarget posture_target_;
+  Eigen::VectorXd last_;
 };
 
 }  // namespace gelenk

@@ -73,6 +73,7 @@ Retargeter::Retargeter(std::shared_ptr<const BodyModel> source,
 void Retargeter::Reset() {
   detector_.Reset();
   placement_.Reset();
+  limits_.Reset();
   for (int side : kSides) {
     if (planters_[side]) planters_[side]->Reset();
   }
@@ -166,7 +167,8 @@ void Retargeter::AimHands(const BodyPose& source) {
 }
 
 void Retargeter::MeasureErrors() {
-  const bool is_limited = report_.limit_excess > 0;
+  const bool is_limited =
+      report_.limit_excess > 0 || limits_.SolvesEveryFrame();
   if (is_limited) ForwardKinematics(*target_->skeleton, positions_, limited_);
   const auto place = [&](BodyRole role) -> Vector3d {
     if (!is_limited) return rig_.place(role);
@@ -232,7 +234,7 @@ void Retargeter::Finish(const BodyPose& source, double dt_s) {
   }
   last_positions_ = positions_;
   rig_.Store(positions_);
-  report_.limit_excess = options_.keep_limits ? limits_.Keep(positions_) : 0;
+  report_.limit_excess = limits_.Keep(rig_, options_.keep_limits, positions_);
   if (options_.place_limbs) MeasureErrors();
   if (!is_first_) {
     AlignHemispheres(*target_->skeleton, last_positions_, positions_);

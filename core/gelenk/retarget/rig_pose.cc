@@ -19,10 +19,6 @@ double TwistAbout(const Vector3d& axis, const Quaterniond& rotation) {
          std::atan2(rotation.w() < 0 ? -along : along, std::abs(rotation.w()));
 }
 
-bool TurnsFreely(JointType type) {
-  return type == JointType::kSpherical || type == JointType::kFree;
-}
-
 }  // namespace
 
 RigPose::RigPose(std::shared_ptr<const BodyModel> model)
@@ -54,16 +50,11 @@ RigPose::RigPose(std::shared_ptr<const BodyModel> model)
   pelvis_place_ = places_[pelvis_];
 }
 
-Quaterniond RigPose::Nearest(int joint, const Quaterniond& parent,
-                             const Quaterniond& wanted) const {
-  const Joint& what = model_->skeleton->joint(joint);
-  if (TurnsFreely(what.type)) return wanted;
-  const Quaterniond rest = parent * what.parent_from_joint.rotation;
-  if (what.type == JointType::kRevolute && !what.mimic) {
-    const double angle = TwistAbout(what.axis, rest.conjugate() * wanted);
-    return rest * Quaterniond(Eigen::AngleAxisd(angle, what.axis));
-  }
-  return parent * model_->parent_from_joint[joint].rotation;
+void RigPose::SetWanted(int joint, const Quaterniond& orientation) {
+  // A base that is fixed stays as it is.
+  if (joint == pelvis_ && carrier_ < 0) return;
+  wanted_[joint] = true;
+  orientations_[joint] = orientation;
 }
 
 void RigPose::Follow() {
@@ -76,16 +67,12 @@ void RigPose::Follow() {
     const int parent = skeleton.span(i).parent;
     if (parent < 0) {
       if (carrier_ >= 0) places_[i] = pelvis_place_;
-      if (!TurnsFreely(skeleton.joint(i).type)) {
-        orientations_[i] =
-            Nearest(i, model_->canonical_from_world, orientations_[i]);
-      }
       continue;
     }
     const RigidTransform& in_parent = model_->parent_from_joint[i];
-    orientations_[i] = wanted_[i]
-                           ? Nearest(i, orientations_[parent], orientations_[i])
-                           : orientations_[parent] * in_parent.rotation;
+    if (!wanted_[i]) {
+      orientations_[i] = orientations_[parent] * in_parent.rotation;
+    }
     places_[i] =
         i == pelvis_ && carrier_ == i
             ? pelvis_place_

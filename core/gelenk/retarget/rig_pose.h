@@ -29,10 +29,7 @@ class RigPose {
 
   // Canonical. Orientations of joints that are set count as wanted, see
   // Follow.
-  void SetWanted(int joint, const Eigen::Quaterniond& orientation) {
-    wanted_[joint] = true;
-    orientations_[joint] = orientation;
-  }
+  void SetWanted(int joint, const Eigen::Quaterniond& orientation);
   void SetPelvis(const Eigen::Vector3d& place) { pelvis_place_ = place; }
 
   const Eigen::Quaterniond& orientation(int joint) const {
@@ -60,9 +57,6 @@ class RigPose {
   void ReadBody(BodyPose& pose) const;
 
  private:
-  Eigen::Quaterniond Nearest(int joint, const Eigen::Quaterniond& parent,
-                             const Eigen::Quaterniond& wanted) const;
-
   std::shared_ptr<const BodyModel> model_;
   std::vector<Eigen::Quaterniond> orientations_;
   std::vector<Eigen::Vector3d> places_;

@@ -1,13 +1,15 @@
-// Every clip on the humanoid, on bodies of glTF files and on the other clips'
-// skeletons, beside plain rotation copy, as the table of docs/retargeting.md.
+// Every clip on the humanoid, on bodies of glTF and URDF files and on the other
+// clips' skeletons, beside plain rotation copy, as the table of
+// docs/retargeting.md.
 //
-//   retarget_table [--pairs | --time] [--gltf FILE.glb]... CLIP.bvh...
+//   retarget_table [--pairs | --time] [--onto FILE]... CLIP.bvh...
 //
 // A row is the mean over the targets of a clip; with --pairs there is one for
 // each. --time measures warm online frames instead.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -15,6 +17,9 @@
 
 #include "gelenk/import/gltf_import.h"
 #include "gelenk/import/gltf_reader.h"
+#include "gelenk/import/urdf_import.h"
+#include "gelenk/import/urdf_reader.h"
+#include "gelenk/retarget/floating_base.h"
 #include "gelenk/retarget/humanoid.h"
 #include "tests/testing/retarget_runs.h"
 
@@ -31,17 +36,31 @@ Target HumanoidTarget() {
   return {"humanoid", *MakeBodyModel(skeleton, *ProposeJointMap(*skeleton))};
 }
 
-absl::StatusOr<Target> GltfTarget(const std::string& path) {
+absl::StatusOr<std::shared_ptr<const Skeleton>> ReadSkeleton(
+    const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (std::filesystem::path(path).extension() == ".urdf") {
+    absl::StatusOr<UrdfDocument> document = ReadUrdf(bytes);
+    if (!document.ok()) return document.status();
+    absl::StatusOr<UrdfImport> import = ImportUrdf(*document);
+    if (!import.ok()) return import.status();
+    return WithFloatingBase(import->skeleton);
+  }
   absl::StatusOr<GltfDocument> document = ReadGltf(bytes);
   if (!document.ok()) return document.status();
   absl::StatusOr<GltfImport> import = ImportGltf(*document);
   if (!import.ok()) return import.status();
-  absl::StatusOr<JointMap> map = ProposeJointMap(*import->skeleton);
+  return import->skeleton;
+}
+
+absl::StatusOr<Target> FileTarget(const std::string& path) {
+  absl::StatusOr<std::shared_ptr<const Skeleton>> skeleton = ReadSkeleton(path);
+  if (!skeleton.ok()) return skeleton.status();
+  absl::StatusOr<JointMap> map = ProposeJointMap(**skeleton);
   if (!map.ok()) return map.status();
   absl::StatusOr<std::shared_ptr<const BodyModel>> model =
-      MakeBodyModel(import->skeleton, *map);
+      MakeBodyModel(*skeleton, *map);
   if (!model.ok()) return model.status();
   return Target{std::filesystem::path(path).stem().string(), *model};
 }
@@ -171,8 +190,8 @@ int Main(int argc, char** argv) {
       (argument == "--time" ? time : pairs) = true;
       continue;
     }
-    if (argument == "--gltf" && i + 1 < argc) {
-      absl::StatusOr<Target> target = GltfTarget(argv[++i]);
+    if (argument == "--onto" && i + 1 < argc) {
+      absl::StatusOr<Target> target = FileTarget(argv[++i]);
       if (!target.ok()) {
         std::fprintf(stderr, "%s: %s\n", argv[i],
                      target.status().ToString().c_str());
