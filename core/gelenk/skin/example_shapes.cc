@@ -249,17 +249,13 @@ absl::StatusOr<SkinShape> Humanoid(int vertex_count) {
             {0, 1.66, 0.01},
             0.085,
             0.09});
-  const std::pair<const char*, double> kSides[] = {{"left", 1}, {"right", -1}};
-  for (const auto& [name, side] : kSides) {
+  for (const double side : {1.0, -1.0}) {
     std::vector<std::string> ids;
-    const auto id = [&](absl::string_view part) {
-      ids.push_back(absl::StrCat(name, "_", part));
-    };
     for (absl::string_view part :
          {"thigh", "shank", "foot", "upper_arm", "forearm", "hand"}) {
-      id(part);
+      ids.push_back(absl::StrCat(side > 0 ? "left_" : "right_", part));
     }
-    const auto at = [side = side](double x, double y, double z) {
+    const auto at = [side](double x, double y, double z) {
       return Vector3d(side * x, y, z);
     };
     body.Add({ids[0].c_str(), "pelvis", JointType::kSpherical, at(0.1, 0.9, 0),

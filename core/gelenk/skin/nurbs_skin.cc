@@ -202,7 +202,8 @@ class NurbsFitting {
         } else {
           RefineV(fit->bad_v, refined);
         }
-        if (static_cast<int>(refined.points.size()) > options_.max_points) {
+        if (static_cast<int>(refined.points.size()) > options_.max_points ||
+            std::max(refined.u.count(), refined.v.count()) > kMaxNurbsCount) {
           continue;
         }
         absl::StatusOr<Fit> candidate = FitOf(refined);

@@ -37,6 +37,12 @@ void CheckAxis(const NurbsAxis& axis, const std::string& field,
                                 axis.degree, ", got ", axis.knots.size()));
     return;
   }
+  if (axis.count() > kMaxNurbsCount) {
+    violations.Add(field + ".knots",
+                   absl::StrCat("want at most ", kMaxNurbsCount,
+                                " control points, got ", axis.count()));
+    return;
+  }
   for (size_t i = 0; i < axis.knots.size(); ++i) {
     if (!std::isfinite(axis.knots[i])) {
       violations.Add(absl::StrCat(field, ".knots[", i, "]"),
@@ -121,6 +127,7 @@ void Refine(absl::Span<const double> knots, bool along_u, IndexOf index_of,
   std::vector<std::vector<Vector4d>> refined_rows;
   for (int r = 0; r < rows; ++r) {
     std::vector<Vector4d> row;
+    row.reserve(axis.count() + knots.size());
     for (int i = 0; i < axis.count(); ++i) {
       row.push_back(net[index_of(surface, r, i)]);
     }

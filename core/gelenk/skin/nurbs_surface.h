@@ -39,6 +39,9 @@ struct NurbsSurface {
   int index(int i, int j) const { return i * v.count() + j; }
 };
 
+// Along one axis: what determines a net from points is dense in it.
+inline constexpr int kMaxNurbsCount = 512;
+
 struct NurbsBounds {
   int max_points = 1 << 16;
 };

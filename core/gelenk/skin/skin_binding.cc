@@ -227,6 +227,7 @@ class SectionFitter {
   static double Quantile(const std::vector<Eigen::Vector2d>& points,
                          const Measure& measure) {
     std::vector<double> values;
+    values.reserve(points.size());
     for (const Eigen::Vector2d& point : points) {
       values.push_back(measure(point));
     }
@@ -317,6 +318,7 @@ std::shared_ptr<const VolumeRig> FitSections(const VolumeRig& rig,
                                              const TriangleMesh& mesh) {
   const std::vector<Vector3d> normals = VertexNormals(mesh);
   std::vector<Eigen::Vector2d> half_extents;
+  half_extents.reserve(rig.link_count());
   for (int i = 0; i < rig.link_count(); ++i) {
     half_extents.push_back(SectionFitter(rig, i).Fit(mesh, normals));
   }

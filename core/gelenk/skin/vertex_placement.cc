@@ -116,10 +116,7 @@ void VertexPlacer::FindNear(const Vector3d& point, double reach,
                             std::vector<Placement>& placements) const {
   placements.clear();
   for (int i = 0; i < rig_.link_count(); ++i) {
-    // Stubs lie before the bone, bent volumes beside it.
-    double far = 2 * reach * rig_.link(i).half_extents_m.maxCoeff();
-    if (rig_.is_branch(i)) far += 3 * rig_.start_spacing_m(i);
-    if (DistanceFromBone(point, i) > far) continue;
+    if (DistanceFromBone(point, i) > reach * Slack(i)) continue;
     Placement placement;
     if (BestInLink(point, i, &placement) && placement.radius <= reach) {
       placements.push_back(placement);
@@ -128,20 +125,36 @@ void VertexPlacer::FindNear(const Vector3d& point, double reach,
 }
 
 Placement VertexPlacer::InChain(const Vector3d& point, int chain) const {
-  Placement best;
   int nearest = -1;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < rig_.link_count(); ++i) {
     if (rig_.chain(i) != chain) continue;
     const double distance = DistanceFromBone(point, i);
     if (distance < least) nearest = i, least = distance;
-    Placement placement;
-    if (BestInLink(point, i, &placement) &&
-        (best.link < 0 || placement.radius < best.radius)) {
-      best = placement;
-    }
   }
-  return best.link >= 0 ? best : InLink(point, nearest);
+  // Inverting volumes is dear: first those of links that are about as near.
+  for (bool only_near : {true, false}) {
+    Placement best;
+    for (int i = 0; i < rig_.link_count(); ++i) {
+      if (rig_.chain(i) != chain) continue;
+      if (only_near && DistanceFromBone(point, i) > least + Slack(i)) continue;
+      Placement placement;
+      if (BestInLink(point, i, &placement) &&
+          (best.link < 0 || placement.radius < best.radius)) {
+        best = placement;
+      }
+    }
+    if (best.link >= 0) return best;
+  }
+  return InLink(point, nearest);
+}
+
+// By how much a link may be farther than another and still hold a point: its
+// stub lies before the bone, its bent volumes beside it.
+double VertexPlacer::Slack(int link) const {
+  const double section = 2 * rig_.link(link).half_extents_m.maxCoeff();
+  return rig_.is_branch(link) ? section + 3 * rig_.start_spacing_m(link)
+                              : section;
 }
 
 Placement VertexPlacer::InLink(const Vector3d& point, int link) const {

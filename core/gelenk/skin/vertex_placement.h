@@ -45,6 +45,7 @@ class VertexPlacer {
                  std::vector<BlendShare>& shares) const;
 
  private:
+  double Slack(int link) const;
   bool InVolume(const Eigen::Vector3d& point, int volume,
                 Placement* placement) const;
   bool InCap(const Eigen::Vector3d& point, int link,

@@ -189,6 +189,10 @@ TEST(NurbsSurfaceTest, SaysWhatIsWrong) {
   bad.u.knots.resize(3);
   EXPECT_THAT(CheckNurbs(bad), Fails(code, "u.knots: want at least 6"));
   bad = good;
+  bad.v.knots.resize(kMaxNurbsCount + 5, 4);
+  EXPECT_THAT(CheckNurbs(bad),
+              Fails(code, "v.knots: want at most 512 control points, got 513"));
+  bad = good;
   bad.trim_curve_count = 2;
   EXPECT_THAT(CheckNurbs(bad),
               Fails(absl::StatusCode::kUnimplemented, "trimmed surfaces"));
