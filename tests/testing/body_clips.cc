@@ -22,12 +22,11 @@ absl::StatusOr<BodyClip> BodyClipFromBvh(absl::string_view text,
   if (!import.ok()) return import.status();
   absl::StatusOr<Eigen::MatrixXd> poses = PosesFromBvh(*document, *import);
   if (!poses.ok()) return poses.status();
-  absl::StatusOr<JointMap> map = ProposeJointMap(*import->skeleton);
-  if (!map.ok()) return map.status();
-
   const int first =
       FindFirstFrameJump(*import->skeleton, *poses).has_value() ? 1 : 0;
   const ClipView view = {*poses, document->frame_time_s, first};
+  absl::StatusOr<JointMap> map = ProposeJointMap(*import->skeleton, {}, &view);
+  if (!map.ok()) return map.status();
   absl::StatusOr<std::shared_ptr<const BodyModel>> model =
       MakeBodyModel(import->skeleton, *map, &view);
   if (!model.ok()) return model.status();

@@ -14,6 +14,7 @@
 #include "gelenk/motion/body_parts.h"
 #include "gelenk/motion/body_shape.h"
 #include "gelenk/retarget/limb_finder.h"
+#include "gelenk/retarget/side_check.h"
 
 namespace gelenk {
 namespace {
@@ -40,7 +41,7 @@ class JointMapProposal {
     }
   }
 
-  JointMap Propose() {
+  JointMap Propose(const ClipView* clip) {
     TakeEnds();
     TakeTrunk();
     for (int side : kSides) {
@@ -49,6 +50,7 @@ class JointMapProposal {
     }
     TakeSpine();
     TakeNeck();
+    if (clip != nullptr && clip->frame_count() > 0) SettleSides(*clip);
     NoteMissing();
     return std::move(map_);
   }
@@ -217,6 +219,42 @@ class JointMapProposal {
         RoleEvidence::kTopology);
   }
 
+  // Where neither names nor the user say which side is which.
+  void SettleSides(const ClipView& clip) {
+    const SwappedSides swapped = CheckSides(skeleton_, map_, clip);
+    if (swapped.legs) {
+      Swap({{BodyRole::kLeftThigh, BodyRole::kRightThigh},
+            {BodyRole::kLeftShin, BodyRole::kRightShin},
+            {BodyRole::kLeftFoot, BodyRole::kRightFoot},
+            {BodyRole::kLeftToe, BodyRole::kRightToe}});
+    }
+    if (swapped.arms) {
+      Swap({{BodyRole::kLeftClavicle, BodyRole::kRightClavicle},
+            {BodyRole::kLeftUpperArm, BodyRole::kRightUpperArm},
+            {BodyRole::kLeftForearm, BodyRole::kRightForearm},
+            {BodyRole::kLeftHand, BodyRole::kRightHand}});
+    }
+  }
+
+  void Swap(absl::Span<const std::pair<BodyRole, BodyRole>> pairs) {
+    for (const auto& [left, right] : pairs) {
+      for (BodyRole role : {left, right}) {
+        if (IsGiven(role)) return;
+        if (map_.Has(role) &&
+            ReadBodyPartName(skeleton_.joint(map_.joint(role)).id).side !=
+                BodySide::kNone) {
+          return;
+        }
+      }
+    }
+    for (const auto& [left, right] : pairs) {
+      std::swap(map_.roles[IndexOf(left)], map_.roles[IndexOf(right)]);
+    }
+    map_.notes.push_back(absl::StrCat(
+        BodyRoleName(pairs.back().first),
+        " and its side are told by the motion: toes point forward"));
+  }
+
   void NoteMissing() {
     std::string missing;
     for (int i = 0; i < kBodyRoleCount; ++i) {
@@ -329,7 +367,8 @@ std::vector<JointMapEntry> EntriesOf(const JointMap& map,
 }
 
 absl::StatusOr<JointMap> ProposeJointMap(
-    const Skeleton& skeleton, absl::Span<const JointMapOverride> overrides) {
+    const Skeleton& skeleton, absl::Span<const JointMapOverride> overrides,
+    const ClipView* clip) {
   JointMap map;
   Given given = {};
   if (absl::Status status = ReadOverrides(skeleton, overrides, map, given);
@@ -337,7 +376,7 @@ absl::StatusOr<JointMap> ProposeJointMap(
     return status;
   }
   if (skeleton.joint_count() == 0) return map;
-  return JointMapProposal(skeleton, std::move(map), given).Propose();
+  return JointMapProposal(skeleton, std::move(map), given).Propose(clip);
 }
 
 std::vector<JointMapOverride> OverridesOfHumanoid(

@@ -18,6 +18,7 @@
 #include "absl/strings/string_view.h"
 #include "absl/types/span.h"
 #include "gelenk/retarget/body_role.h"
+#include "gelenk/retarget/clip_view.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
@@ -69,12 +70,13 @@ struct JointMapOverride {
 std::vector<JointMapEntry> EntriesOf(const JointMap& map,
                                      const Skeleton& skeleton);
 
-// Errors: INVALID_ARGUMENT listing overrides[i] whose role or joint is unknown,
-// that come twice, or that give one joint two roles. Cost: that of
-// FindBodyParts.
+// Where no name tells left from right, `clip` (may be null) does: in motion
+// toes point forward. Errors: INVALID_ARGUMENT listing overrides[i] whose role
+// or joint is unknown, that come twice, or that give one joint two roles. Cost:
+// that of FindBodyParts, and of 100 frames.
 absl::StatusOr<JointMap> ProposeJointMap(
-    const Skeleton& skeleton,
-    absl::Span<const JointMapOverride> overrides = {});
+    const Skeleton& skeleton, absl::Span<const JointMapOverride> overrides = {},
+    const ClipView* clip = nullptr);
 
 // A humanoid's own word, as VRM files and Unity avatars carry it: bone name and
 // joint id. Roles that it does not name are nobody's. Bones without a role are

@@ -11,20 +11,11 @@
 
 #include "absl/status/statusor.h"
 #include "gelenk/kinematics/forward_kinematics.h"
+#include "gelenk/retarget/clip_view.h"
 #include "gelenk/retarget/joint_map.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
-
-// Poses one after the other, in columns. Must outlive its use.
-struct ClipView {
-  const Eigen::MatrixXd& positions;
-  double frame_time_s = 1.0 / 30;
-  // The frames before are none of the motion: see FindFirstFrameJump.
-  int first_frame = 0;
-
-  int frame_count() const { return static_cast<int>(positions.cols()); }
-};
 
 struct ReferencePose {
   Eigen::VectorXd positions;
