@@ -8,12 +8,16 @@
 namespace gelenk {
 namespace {
 
-// The active set settles in a handful of rounds.
+// Most active sets are found in fewer block rounds; one at a time they settle
+// within as many again as there are bounds in the way.
+constexpr int kBlockRounds = 12;
 constexpr int kMaxRounds = 40;
 // Something let go this often stays held: the rest is rounding.
 constexpr int kMaxDrops = 2;
 // A bound this near is reached. Rad or m.
 constexpr double kFeasible = 1e-14;
+// A row of A that is off by no more holds.
+constexpr double kHolds = 1e-10;
 // Of the forces' size: less is rounding.
 constexpr double kWrongSign = 1e-9;
 // Of a one-sided row, beyond which it is on the wrong side; weighted m.
@@ -105,13 +109,63 @@ LevelStep::MatrixView LevelStep::AddRows(int count) {
 
 bool LevelStep::Solve() {
   StartActiveSet();
-  bool settled = false;
+  bool settled = SolveByBlocks();
+  if (!settled) {
+    std::fill_n(holds_.begin(), column_count_, Hold::kFree);
+    StartActiveSet();
+  }
   for (int round = 0; round < kMaxRounds && !settled; ++round) {
     SolveActiveSet();
     settled = !MoveToFirstBound() && !DropWrong() && !FlipOneSided();
   }
   MeasureForces();
   return settled;
+}
+
+bool LevelStep::SolveByBlocks() {
+  for (int round = 0; round < kBlockRounds; ++round) {
+    for (int i = 0; i < column_count_; ++i) {
+      step_[i] = holds_[i] == Hold::kLower   ? lower_[i]
+                 : holds_[i] == Hold::kUpper ? upper_[i]
+                                             : 0;
+    }
+    SolveActiveSet();
+    AddScaled(1, move_.data(), step_.data(), column_count_);
+    // What is held too tightly cannot all be held.
+    for (int r = 0; r < constraint_count_; ++r) {
+      if (active_[r] != 0 &&
+          std::abs(Dot(A(r), step_.data(), column_count_) - c_[r]) > kHolds) {
+        return false;
+      }
+    }
+    const bool dropped = DropWrong();
+    if (!HoldViolated() && !dropped && !FlipOneSided()) return true;
+  }
+  return false;
+}
+
+bool LevelStep::HoldViolated() {
+  bool violated = false;
+  for (int i = 0; i < column_count_; ++i) {
+    if (holds_[i] != Hold::kFree || scale_[i] == 0) continue;
+    if (step_[i] < lower_[i] - kFeasible) {
+      holds_[i] = Hold::kLower;
+    } else if (step_[i] > upper_[i] + kFeasible) {
+      holds_[i] = Hold::kUpper;
+    } else {
+      continue;
+    }
+    violated = true;
+  }
+  for (int r = 0; r < constraint_count_; ++r) {
+    if (active_[r] != 0 ||
+        Dot(A(r), step_.data(), column_count_) >= c_[r] - kFeasible) {
+      continue;
+    }
+    active_[r] = 1;
+    violated = true;
+  }
+  return violated;
 }
 
 void LevelStep::StartActiveSet() {
@@ -143,7 +197,12 @@ void LevelStep::SolveActiveSet() {
     z_[i] = scale_[i] * (pull_[i] - diagonal_[i] * step_[i]);
   }
   null_space_.ApplyTransposed(z_.data());
-  std::fill_n(z_.begin(), null_space_.rank(), 0.0);
+  for (int r = 0; r < constraint_count_; ++r) {
+    if (active_[r] != 0) {
+      room_[r] = c_[r] - Dot(A(r), step_.data(), column_count_);
+    }
+  }
+  null_space_.SolveForms(room_.data(), z_.data());
   SolveRows();
   null_space_.Apply(z_.data());
   for (int i = 0; i < column_count_; ++i) move_[i] = scale_[i] * z_[i];
@@ -162,7 +221,7 @@ void LevelStep::SolveRows() {
     } else {
       for (int i = 0; i < n; ++i) row[i] = J(r)[i] * scale_[i];
       null_space_.ApplyTransposed(row);
-      rest_[r] -= Dot(row + rank, z_.data() + rank, n - rank);
+      rest_[r] -= Dot(row, z_.data(), n);
     }
     for (int s = 0; s <= r; ++s) {
       sums[s] =

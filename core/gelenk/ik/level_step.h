@@ -10,12 +10,14 @@
 // levels above, J this level. A row of J may be one-sided: it counts only where
 // J x < e, as that of a half-space does.
 //
-// A primal active-set method from x = 0, which satisfies everything: it goes on
-// until a bound stands in the way and is held there, and lets go what pulls
-// inwards (Nocedal and Wright, Numerical Optimization, 2006, ch. 16). In
-// between, A is factorised in the metric of D (see NullSpace), so that the rest
-// of the problem has no more unknowns than this level has rows, however large
-// the skeleton is.
+// Bounds are found by blocks: all that a step breaks are held, all that pull
+// inwards let go, until neither is left (Kunisch and Rendl, SIAM J. Optim.
+// 14(1), 2003). Where that does not settle, a primal active-set method from
+// x = 0, which satisfies everything, goes on until a bound stands in the way
+// and is held there (Nocedal and Wright, Numerical Optimization, 2006, ch. 16).
+// In between, A is factorised in the metric of D (see NullSpace), so that the
+// rest of the problem has no more unknowns than this level has rows, however
+// large the skeleton is.
 //
 // Cost of a round: 2 n m^2 for n degrees of freedom and m rows of A, and
 // n k (4 m + k) + k^3 / 3 for k rows of J; a warm step takes one round or two.
@@ -95,7 +97,12 @@ class LevelStep {
   enum class Hold : uint8_t { kFree, kLower, kUpper };
 
   void StartActiveSet();
-  // The best move with what is held, from the step so far.
+  // False when it did not settle.
+  bool SolveByBlocks();
+  // Holds what the step breaks; false when that is nothing.
+  bool HoldViolated();
+  // The best move with what is held, from the step so far; brings the rows that
+  // hold to their values.
   void SolveActiveSet();
   void SolveRows();
   // Makes the move, up to the first bound in its way, which then holds; false
