@@ -232,7 +232,7 @@ LevelStep::MatrixView GoalLevels::ComputeJacobian(
   return jacobian;
 }
 
-void GoalLevels::AddHeld(const ConstVectorView& positions, bool violated_only,
+void GoalLevels::AddHeld(const ConstVectorView& positions, bool restore,
                          LevelStep& step) {
   for (size_t g = 0; g < states_.size(); ++g) {
     const State& state = states_[g];
@@ -241,16 +241,16 @@ void GoalLevels::AddHeld(const ConstVectorView& positions, bool violated_only,
     if (state.level < 0 || state.level >= held_levels_) continue;
     const LevelStep::MatrixView jacobian = ComputeJacobian(goal, positions);
     const bool one_sided = target.shape == GoalShape::kHalfSpace;
-    const double room = state.rows.clearance - state.held[0];
     for (int r = 0; r < GoalLinearizer::RowCount(target); ++r) {
       if (!Counts(goal, r)) continue;
-      LevelStep::MatrixView row =
-          step.AddConstraints(1, one_sided && !violated_only);
-      if (one_sided && violated_only && room >= 0) continue;
+      LevelStep::MatrixView row = step.AddConstraints(1, one_sided);
       row = jacobian.row(r);
-      if (one_sided && !violated_only) {
-        step.SetConstraint(step.constraint_count() - 1, std::min(0.0, -room));
-      }
+      const double back = one_sided ? state.held[0] - state.rows.clearance
+                                    : state.rows.residual[r] - state.held[r];
+      step.SetConstraint(step.constraint_count() - 1, restore ? back
+                                                      : one_sided
+                                                          ? std::min(0.0, back)
+                                                          : 0);
     }
   }
 }
@@ -276,9 +276,9 @@ void GoalLevels::AddLevel(int level, const ConstVectorView& positions,
     }
   }
   for (const PostureTerm& term : postures_[level]) {
-    const Eigen::Matrix3d* basis =
+    const StepSpace::Basis* basis =
         term.rotation ? space.BasisAt(term.column) : nullptr;
-    if (basis == nullptr) continue;
+    if (basis == nullptr || basis->orthogonal) continue;
     // Not orthogonal: no diagonal holds it.
     const double root = std::sqrt(term.weight);
     LevelStep::MatrixView rows = step.AddRows(3);
@@ -302,8 +302,10 @@ void GoalLevels::SetDiagonal(int level, absl::Span<const double> damping,
                      term.weight * (term.target[0] - positions[term.position]));
       continue;
     }
-    if (space.BasisAt(c) != nullptr) continue;
-    const Eigen::Vector3d turn = BodyTurn(term, positions);
+    const StepSpace::Basis* basis = space.BasisAt(c);
+    if (basis != nullptr && !basis->orthogonal) continue;
+    Eigen::Vector3d turn = BodyTurn(term, positions);
+    if (basis != nullptr) turn = basis->axes.transpose() * turn;
     for (int k = 0; k < 3; ++k) {
       step.SetColumn(c + k, damping[c + k] + term.weight,
                      term.weight * turn[k]);

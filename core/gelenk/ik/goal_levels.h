@@ -66,10 +66,9 @@ class GoalLevels {
   // Room that both kinds of rows take.
   int held_row_count() const { return held_row_count_; }
   int row_count(int level) const;
-  // Adds the rows of the held levels; with `violated_only`, of half-spaces only
-  // those that are on the wrong side, as equations.
-  void AddHeld(const ConstVectorView& positions, bool violated_only,
-               LevelStep& step);
+  // Adds the rows of the held levels: that they stay where they are or, with
+  // `restore`, go back to what they hold.
+  void AddHeld(const ConstVectorView& positions, bool restore, LevelStep& step);
   // Adds those of a level, and of its postures what no diagonal holds.
   void AddLevel(int level, const ConstVectorView& positions,
                 const StepSpace& space, LevelStep& step);

@@ -20,6 +20,8 @@ constexpr double kStationaryGain = 1e-5;
 constexpr double kMaxStep = 1.5;
 constexpr double kLeastStiffness = 1e-6;
 
+// In place of kStationaryGain where the next frame goes on.
+constexpr double kBoundedGain = 1e-2;
 // Of the heaviest posture of a level: what holds the joints that have none, and
 // keeps the metric well conditioned. Slows a posture by as much.
 constexpr double kPostureDamping = 1e-2;
@@ -65,6 +67,9 @@ kernel::Attempt LevelDescent::Run(GoalLevels& goals, int level,
   double window_energy = energy;
   double window_goals = goal_energy;
   double last_move = -1;
+  const double stationary_gain =
+      settings.bounded ? kBoundedGain : kStationaryGain;
+  step_.SetShortensWish(settings.bounded);
   bool moved = true;
   bool at_positions = true;
   for (int iteration = 0;; ++iteration) {
@@ -87,8 +92,8 @@ kernel::Attempt LevelDescent::Run(GoalLevels& goals, int level,
         attempt.end = AttemptEnd::kImpatient;
         break;
       }
-      if (energy > (1 - kStationaryGain) * window_energy &&
-          goal_energy > (1 - kStationaryGain) * window_goals) {
+      if (energy >= (1 - stationary_gain) * window_energy &&
+          goal_energy >= (1 - stationary_gain) * window_goals) {
         attempt.end = AttemptEnd::kStationary;
         break;
       }
@@ -137,14 +142,11 @@ kernel::Attempt LevelDescent::Run(GoalLevels& goals, int level,
 void LevelDescent::Linearize(GoalLevels& goals, int level, StepSpace& space,
                              const ConstVectorView& positions) {
   space.MoveTo(positions);
-  step_.Reserve(space.size(),
-                goals.held_row_count() + space.bounded_turn_count(),
-                goals.row_count(level));
+  step_.Reserve(space.size(), goals.held_row_count(), goals.row_count(level));
   goals.AddHeld(positions, false, step_);
   goals.AddLevel(level, positions, space, step_);
   space.TurnColumns(step_.constraints());
   space.TurnColumns(step_.rows());
-  space.BoundTurns(step_);
   for (int c = 0; c < space.size(); ++c) {
     step_.SetBounds(c, space.lower(c), space.upper(c));
   }
@@ -189,7 +191,7 @@ bool LevelDescent::RestoreAnew(GoalLevels& goals, int level,
   restoring_space_ = space;
   double last = 0;
   for (int round = 0; round < kThoroughRounds; ++round) {
-    const double deviation = goals.Deviation(deviations_.data());
+    const double deviation = goals.Deviation(nullptr);
     if (deviation <= kHeldTolerance) return true;
     if (round > 0 && deviation > kQuickGain * last) return false;
     last = deviation;
@@ -199,14 +201,11 @@ bool LevelDescent::RestoreAnew(GoalLevels& goals, int level,
     restoring_space_.TurnColumns(restoring_step_.constraints());
     for (int c = 0; c < space.size(); ++c) {
       restoring_step_.SetColumn(c, stiffness_[c], 0);
-      // What is at a bound stays there: Move would take it back.
-      const bool at_bound =
-          restoring_space_.lower(c) >= 0 || restoring_space_.upper(c) <= 0;
-      restoring_step_.SetBounds(c, at_bound ? 0 : -1, at_bound ? 0 : 1);
+      restoring_step_.SetBounds(c, restoring_space_.lower(c),
+                                restoring_space_.upper(c));
     }
-    restoring_step_.Solve();
-    restoring_step_.Correct(deviations_.data(), correction_.data());
-    restoring_space_.Move(correction_.data(), 1, positions);
+    if (!restoring_step_.SolveConstraints()) return false;
+    restoring_space_.Move(restoring_step_.step().data(), 1, positions);
     goals.MoveTo(positions, level);
   }
   return goals.Deviation(nullptr) <= kHeldTolerance;

@@ -37,6 +37,8 @@ struct LevelSettings {
   double position_tolerance_m;
   double rotation_tolerance_rad;
   int max_iterations;
+  // A frame that may go only so far: it is not the last one, and ends sooner.
+  bool bounded;
   // As in kernel::Settings.
   bool impatient;
   StopCondition stop;

@@ -16,8 +16,13 @@ constexpr int kMaxRounds = 40;
 constexpr int kMaxDrops = 2;
 // A bound this near is reached. Rad or m.
 constexpr double kFeasible = 1e-14;
+// In whole ranges of a column: what wishes for more is only told by the way.
+constexpr double kOverreach = 0.7;
 // A row of A that is off by no more holds.
 constexpr double kHolds = 1e-10;
+// Columns that are held and would help by this part of what the best one would
+// are let go together.
+constexpr double kHelps = 0.5;
 // Of the forces' size: less is rounding.
 constexpr double kWrongSign = 1e-9;
 // Of a one-sided row, beyond which it is on the wrong side; weighted m.
@@ -122,6 +127,26 @@ bool LevelStep::Solve() {
   return settled;
 }
 
+bool LevelStep::SolveConstraints() {
+  StartActiveSet();
+  return SolveByBlocks();
+}
+
+void LevelStep::ShortenWish() {
+  double most = 0;
+  for (int i = 0; i < column_count_; ++i) {
+    if (holds_[i] != Hold::kFree) continue;
+    most = std::max(most, std::abs(step_[i]) / (upper_[i] - lower_[i]));
+  }
+  if (most <= kOverreach) return;
+  const double part = kOverreach / most;
+  for (int r = 0; r < row_count_; ++r) e_[r] *= part;
+  for (int i = 0; i < column_count_; ++i) {
+    pull_[i] *= part;
+    step_[i] *= part;
+  }
+}
+
 bool LevelStep::SolveByBlocks() {
   for (int round = 0; round < kBlockRounds; ++round) {
     for (int i = 0; i < column_count_; ++i) {
@@ -131,17 +156,36 @@ bool LevelStep::SolveByBlocks() {
     }
     SolveActiveSet();
     AddScaled(1, move_.data(), step_.data(), column_count_);
-    // What is held too tightly cannot all be held.
-    for (int r = 0; r < constraint_count_; ++r) {
-      if (active_[r] != 0 &&
-          std::abs(Dot(A(r), step_.data(), column_count_) - c_[r]) > kHolds) {
-        return false;
-      }
-    }
+    if (round == 0 && shortens_wish_) ShortenWish();
+    if (ReleaseForRows()) continue;
     const bool dropped = DropWrong();
     if (!HoldViolated() && !dropped && !FlipOneSided()) return true;
   }
   return false;
+}
+
+bool LevelStep::ReleaseForRows() {
+  // The way in which columns would have to move.
+  std::fill_n(z_.begin(), column_count_, 0.0);
+  bool off = false;
+  for (int r = 0; r < constraint_count_; ++r) {
+    if (active_[r] == 0) continue;
+    const double left = c_[r] - Dot(A(r), step_.data(), column_count_);
+    if (std::abs(left) <= kHolds) continue;
+    off = true;
+    AddScaled(left, A(r), z_.data(), column_count_);
+  }
+  if (!off) return false;
+  double most = 0;
+  const auto inwards = [&](int i) {
+    if (holds_[i] == Hold::kFree || lower_[i] >= upper_[i]) return 0.0;
+    return holds_[i] == Hold::kLower ? z_[i] : -z_[i];
+  };
+  for (int i = 0; i < column_count_; ++i) most = std::max(most, inwards(i));
+  for (int i = 0; i < column_count_ && most > 0; ++i) {
+    if (inwards(i) >= kHelps * most) holds_[i] = Hold::kFree;
+  }
+  return true;
 }
 
 bool LevelStep::HoldViolated() {

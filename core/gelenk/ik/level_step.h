@@ -76,10 +76,19 @@ class LevelStep {
     upper_[column] = upper;
   }
 
+  // For bounds that are near everywhere: a step that goes far out of them would
+  // end in a corner, and take long to find which. Asks for a part of it
+  // instead.
+  void SetShortensWish(bool shortens) { shortens_wish_ = shortens; }
+
   // False when the active set was still changing after many rounds; the step is
   // inside its bounds all the same. Of what the last Solve held of columns that
   // have not moved since, it starts from.
   bool Solve();
+
+  // The same where c may be anything, also of the equations; only by blocks.
+  // False, and no step, where they did not find one.
+  bool SolveConstraints();
 
   ConstVectorMap step() const { return {step_.data(), column_count_}; }
   // By how much the objective falls, if J is right.
@@ -99,6 +108,9 @@ class LevelStep {
   void StartActiveSet();
   // False when it did not settle.
   bool SolveByBlocks();
+  void ShortenWish();
+  // Lets columns go without which the rows cannot hold; false when they do.
+  bool ReleaseForRows();
   // Holds what the step breaks; false when that is nothing.
   bool HoldViolated();
   // The best move with what is held, from the step so far; brings the rows that
@@ -125,6 +137,7 @@ class LevelStep {
   int column_count_ = 0;
   int constraint_count_ = 0;
   int row_count_ = 0;
+  bool shortens_wish_ = false;
   // The problem.
   std::vector<double> a_, c_, j_, e_;
   std::vector<uint8_t> at_least_, one_sided_, counts_;

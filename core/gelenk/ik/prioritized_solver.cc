@@ -67,7 +67,10 @@ void PrioritizedSolver::Solve(const IkProblem& problem,
   const int budget = bounded ? 0 : RestartBudget(options, start);
   const LevelSettings settings = {options.position_tolerance_m,
                                   options.rotation_tolerance_rad,
-                                  options.max_iterations, budget > 0, stop};
+                                  options.max_iterations,
+                                  bounded,
+                                  budget > 0,
+                                  stop};
   report.iteration_count = 0;
   report.restart_count = 0;
   Run(options, settings, nullptr, positions, levels_, report);

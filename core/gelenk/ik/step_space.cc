@@ -18,6 +18,10 @@ constexpr double kNear = 0.3;
 constexpr double kPointCone = 1e-6;
 // A turn this small has no direction, rad.
 constexpr double kNoTurn = 1e-9;
+// Half edges of boxes in the unit ball: of a cube, and of a longer one.
+constexpr double kCube = 0.577;
+constexpr double kAlong = 0.9;
+constexpr double kAcross = 0.3;
 // Bounds of a turn and limits of a rotation are brought together in so many
 // rounds; where they meet at a slant each leaves a part of the gap before.
 constexpr int kBoundRounds = 16;
@@ -43,7 +47,6 @@ void StepSpace::Reset(const Skeleton& skeleton, std::optional<double> max_step,
   start_.assign(start.begin(), start.end());
   scalars_.clear();
   rotations_.clear();
-  bounded_turn_count_ = 0;
   rotation_at_.assign(skeleton.velocity_count(), -1);
   lower_.assign(skeleton.velocity_count(), -kInfinity);
   upper_.assign(skeleton.velocity_count(), kInfinity);
@@ -75,10 +78,13 @@ void StepSpace::AddJoint(int j, std::optional<double> max_step,
   }
   // Half a turn and more bounds nothing.
   if (most >= std::numbers::pi) most = kInfinity;
-  if (most < kInfinity) ++bounded_turn_count_;
   rotation_at_[first] = static_cast<int>(rotations_.size());
-  rotations_.push_back({j, span.quaternion_offset, first, most, false,
-                        Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()});
+  rotations_.push_back({j,
+                        span.quaternion_offset,
+                        first,
+                        most,
+                        false,
+                        {Eigen::Matrix3d::Identity(), true}});
 }
 
 void StepSpace::MoveTo(const ConstVectorView& positions) {
@@ -88,13 +94,38 @@ void StepSpace::MoveTo(const ConstVectorView& positions) {
     upper_[scalar.velocity] = std::max(0.0, scalar.upper - q);
   }
   for (Rotation& rotation : rotations_) {
-    std::fill_n(lower_.begin() + rotation.velocity, 3, -rotation.most_turn);
-    std::fill_n(upper_.begin() + rotation.velocity, 3, rotation.most_turn);
+    std::fill_n(lower_.begin() + rotation.velocity, 3, -kInfinity);
+    std::fill_n(upper_.begin() + rotation.velocity, 3, kInfinity);
     FindBasis(positions, rotation);
-    if (rotation.most_turn == kInfinity) continue;
-    rotation.turn = LogRotation(
-        QuaternionXyzw(start_.data() + rotation.position).conjugate() *
-        QuaternionXyzw(positions.data() + rotation.position));
+    if (rotation.most_turn < kInfinity) BoundTurn(positions, rotation);
+  }
+}
+
+void StepSpace::BoundTurn(const ConstVectorView& positions,
+                          Rotation& rotation) {
+  const Eigen::Vector3d turn = LogRotation(
+      QuaternionXyzw(start_.data() + rotation.position).conjugate() *
+      QuaternionXyzw(positions.data() + rotation.position));
+  const double turned = turn.norm();
+  Eigen::Vector3d reach = Eigen::Vector3d::Constant(kCube * rotation.most_turn);
+  Eigen::Vector3d at = turn;
+  if (rotation.based) {
+    at = rotation.basis.axes.transpose() * turn;
+  } else if (turned > kNoTurn) {
+    // The first of its axes along the turn.
+    rotation.based = true;
+    const Eigen::Vector3d along = turn / turned;
+    const Eigen::Vector3d across = along.unitOrthogonal();
+    rotation.basis.orthogonal = true;
+    rotation.basis.axes << along, across, along.cross(across);
+    at = {turned, 0, 0};
+    reach = rotation.most_turn * Eigen::Vector3d(kAlong, kAcross, kAcross);
+  }
+  for (int k = 0; k < 3; ++k) {
+    double& lower = lower_[rotation.velocity + k];
+    double& upper = upper_[rotation.velocity + k];
+    lower = std::max(lower, std::min(0.0, -reach[k] - at[k]));
+    upper = std::min(upper, std::max(0.0, reach[k] - at[k]));
   }
 }
 
@@ -120,7 +151,7 @@ void StepSpace::FindBasis(const ConstVectorView& positions,
   }
   if (swing_room > kNear && twist_lower < -kNear && twist_upper > kNear) return;
   rotation.based = true;
-  rotation.basis = RotationBasis(parts, joint.axis, q);
+  rotation.basis = {RotationBasis(parts, joint.axis, q), false};
   const int v = rotation.velocity;
   const auto narrow = [&](int k, double lower, double upper) {
     lower_[v + k] = std::max(lower_[v + k], lower);
@@ -138,27 +169,14 @@ void StepSpace::TurnColumns(LevelStep::MatrixView rows) const {
     if (!rotation.based) continue;
     for (int r = 0; r < rows.rows(); ++r) {
       const Eigen::RowVector3d body = rows.block<1, 3>(r, rotation.velocity);
-      rows.block<1, 3>(r, rotation.velocity) = body * rotation.basis;
+      rows.block<1, 3>(r, rotation.velocity) = body * rotation.basis.axes;
     }
   }
 }
 
-const Eigen::Matrix3d* StepSpace::BasisAt(int first) const {
+const StepSpace::Basis* StepSpace::BasisAt(int first) const {
   const int at = rotation_at_[first];
   return at >= 0 && rotations_[at].based ? &rotations_[at].basis : nullptr;
-}
-
-void StepSpace::BoundTurns(LevelStep& step) const {
-  for (const Rotation& rotation : rotations_) {
-    const double turned = rotation.turn.norm();
-    if (rotation.most_turn == kInfinity || turned < kNoTurn) continue;
-    LevelStep::MatrixView row = step.AddConstraints(1, true);
-    const Eigen::RowVector3d inwards = -rotation.turn.transpose() / turned;
-    row.block<1, 3>(0, rotation.velocity) =
-        rotation.based ? Eigen::RowVector3d(inwards * rotation.basis) : inwards;
-    step.SetConstraint(step.constraint_count() - 1,
-                       std::min(0.0, turned - rotation.most_turn));
-  }
 }
 
 void StepSpace::Move(const double* step, double scale,
@@ -172,7 +190,7 @@ void StepSpace::Move(const double* step, double scale,
     Eigen::Vector3d way =
         scale * Eigen::Map<const Eigen::Vector3d>(step + rotation.velocity);
     if (way.isZero(0)) continue;
-    if (rotation.based) way = rotation.basis * way;
+    if (rotation.based) way = rotation.basis.axes * way;
     double* quaternion = positions.data() + rotation.position;
     StoreXyzw((QuaternionXyzw(quaternion) * ExpRotation(way)).normalized(),
               quaternion);

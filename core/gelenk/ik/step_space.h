@@ -5,8 +5,9 @@
 // One coordinate per velocity. Those of a rotation are body axes, except near
 // its limits: there they are the basis dual to swing angle, swing direction and
 // twist, in which the limits are bounds of single coordinates (see
-// RotationBasis). What a rotation may turn from the start is a bound
-// across its coordinates, a row of LevelStep.
+// RotationBasis). What a rotation may turn from the start is a ball, of which a
+// step sees a box inside: a cube at the start, later a longer one along the
+// turn so far.
 //
 // Cost: linear in the joints. Keeps its memory. Not thread-safe.
 #ifndef GELENK_IK_STEP_SPACE_H_
@@ -41,13 +42,12 @@ class StepSpace {
   // Turns columns of body axes into those of the coordinates, in place.
   void TurnColumns(LevelStep::MatrixView rows) const;
   // Null where the coordinates of the rotation at velocity `first` are its body
-  // axes; else these, as columns.
-  const Eigen::Matrix3d* BasisAt(int first) const;
-
-  // Rotations that may turn no further than a bound from the start.
-  int bounded_turn_count() const { return bounded_turn_count_; }
-  // Their rows.
-  void BoundTurns(LevelStep& step) const;
+  // axes; else these, as columns, and whether they are at right angles.
+  struct Basis {
+    Eigen::Matrix3d axes;
+    bool orthogonal;
+  };
+  const Basis* BasisAt(int first) const;
 
   // Moves `positions` by scale * step, and then inside all limits.
   void Move(const double* step, double scale, VectorView positions) const;
@@ -67,13 +67,15 @@ class StepSpace {
     double most_turn;
     // Where it is.
     bool based;
-    Eigen::Matrix3d basis;
-    Eigen::Vector3d turn;  // from the start, body axes
+    Basis basis;
   };
 
   void AddJoint(int joint, std::optional<double> max_step,
                 const StepBounds* bounds);
+  // Where it is near its limits.
   void FindBasis(const ConstVectorView& positions, Rotation& rotation);
+  // The box of its turn, in axes along that where it has none yet.
+  void BoundTurn(const ConstVectorView& positions, Rotation& rotation);
   // The nearest rotation that keeps both bounds.
   void KeepInside(const Rotation& rotation, double* quaternion) const;
   bool KeepTurn(const Rotation& rotation, double* quaternion) const;
@@ -83,7 +85,6 @@ class StepSpace {
   std::vector<Scalar> scalars_;
   std::vector<Rotation> rotations_;
   std::vector<int> rotation_at_;  // by its first velocity, -1 for none
-  int bounded_turn_count_ = 0;
   std::vector<double> lower_;
   std::vector<double> upper_;
 };
