@@ -68,7 +68,8 @@ std::optional<FirstFrameJump> FindFirstFrameJump(
   const Turn first = turn_after(0);
   if (first.angle_rad < kMinJumpRad) return std::nullopt;
   std::vector<double> others;
-  for (int frame = 1; frame + 1 < positions.cols(); ++frame) {
+  for (int frame = 1; frame + 1 < positions.cols() && frame <= kTypicalFrames;
+       ++frame) {
     others.push_back(turn_after(frame).angle_rad);
   }
   const double typical = Median(std::move(others));

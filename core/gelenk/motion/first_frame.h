@@ -14,14 +14,18 @@ struct FirstFrameJump {
   // The joint that turns most from frame 0 to frame 1, and by how much.
   int joint = -1;
   double angle_rad = 0;
-  // The median over the other pairs of frames of that largest turn.
+  // The median of that largest turn over the next kTypicalFrames pairs of
+  // frames.
   double typical_rad = 0;
 };
 
 // A jump is a turn by at least this, and by so many times the typical one: fast
-// motion sampled slowly has large turns everywhere.
-inline constexpr double kMinJumpRad = 0.35;
-inline constexpr double kMinJumpRatio = 8;
+// motion sampled slowly has large turns everywhere. The next pair alone does
+// not tell: bodies often stand still for a moment, or are still on their way
+// out of the rest pose.
+inline constexpr double kMinJumpRad = 0.26;
+inline constexpr double kMinJumpRatio = 4;
+inline constexpr int kTypicalFrames = 11;
 
 // `positions` holds one pose a column. Unset when the clip begins smoothly or
 // has fewer than three frames. Cost: linear.
