@@ -61,7 +61,10 @@ void RigPose::Follow() {
   const Skeleton& skeleton = *model_->skeleton;
   for (int i = 0; i < skeleton.joint_count(); ++i) {
     if (above_[i]) {
-      if (carrier_ >= 0) places_[i] = pelvis_place_ + above_from_pelvis_[i];
+      // What the carrier hangs on stays where it is.
+      if (carrier_ >= 0 && i >= carrier_) {
+        places_[i] = pelvis_place_ + above_from_pelvis_[i];
+      }
       continue;
     }
     const int parent = skeleton.span(i).parent;
@@ -83,7 +86,7 @@ void RigPose::Follow() {
 void RigPose::Shift(const Vector3d& way) {
   pelvis_place_ += way;
   if (carrier_ < 0) return;
-  for (Vector3d& place : places_) place += way;
+  for (size_t i = carrier_; i < places_.size(); ++i) places_[i] += way;
 }
 
 void RigPose::Store(VectorView positions) const {

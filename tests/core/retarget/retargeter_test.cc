@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gelenk/retarget/humanoid.h"
+#include "gelenk/skeleton/skeleton_builder.h"
 #include "tests/testing/body_clips.h"
 #include "tests/testing/retarget_runs.h"
 #include "tests/testing/rig_family.h"
@@ -123,6 +124,62 @@ TEST(RetargeterTest, BadFramesChangeNothing) {
   EXPECT_THAT((*retargeter)->Retarget(bad, 0.01),
               Fails(kInvalid, "positions[0]"));
   EXPECT_EQ((*retargeter)->positions(), before);
+}
+
+// `body` below another root of type `root`, 0.3 m aside; its own root becomes
+// `pelvis`.
+std::shared_ptr<const Skeleton> BelowArmature(const Skeleton& body,
+                                              JointType root,
+                                              JointType pelvis) {
+  SkeletonBuilder builder;
+  Joint armature;
+  armature.id = "Armature";
+  armature.type = root;
+  armature.parent_from_joint.translation = {0.3, 0, 0};
+  builder.AddJoint(armature);
+  for (int i = 0; i < body.joint_count(); ++i) {
+    Joint joint = body.joint(i);
+    if (i == 0) {
+      joint.parent_id = "Armature";
+      joint.type = pelvis;
+    }
+    builder.AddJoint(joint);
+  }
+  for (const EndEffector& end : body.end_effectors()) {
+    builder.AddEndEffector(end);
+  }
+  return *builder.Build();
+}
+
+TEST(RetargeterTest, JointsAboveThePelvisCarryTheBody) {
+  const SourceClip source = Walk(60);
+  const auto& family = testing::RigFamilies()[0];
+  const auto plain = testing::BodyOf(family);
+  const auto plain_model = *MakeBodyModel(plain, *ProposeJointMap(*plain));
+  const auto expected = *RunRetarget(source, plain_model, RetargetWay::kOnline);
+  const struct {
+    JointType root;
+    JointType pelvis;
+  } rigs[] = {{JointType::kFree, JointType::kSpherical},
+              {JointType::kFixed, JointType::kFree},
+              {JointType::kFree, JointType::kFree}};
+  for (const auto& rig : rigs) {
+    const auto skeleton = BelowArmature(*plain, rig.root, rig.pelvis);
+    const auto model = MakeBodyModel(skeleton, *ProposeJointMap(*skeleton));
+    ASSERT_TRUE(model.ok()) << model.status();
+    const auto run = RunRetarget(source, *model, RetargetWay::kOnline);
+    ASSERT_TRUE(run.ok());
+    WorldTransforms wanted;
+    WorldTransforms made;
+    for (int f = 0; f < run->positions.cols(); ++f) {
+      ForwardKinematics(*plain, expected.positions.col(f), wanted);
+      ForwardKinematics(*skeleton, run->positions.col(f), made);
+      for (size_t i = 0; i < wanted.size(); ++i) {
+        ASSERT_LT((made[i + 1].translation - wanted[i].translation).norm(),
+                  1e-9);
+      }
+    }
+  }
 }
 
 TEST(RetargeterTest, AnUpperBodyIsMovedWithoutLegs) {
