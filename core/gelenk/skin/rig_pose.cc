@@ -135,19 +135,23 @@ class RigPose {
     if (motion.hinge >= 0) {
       const double angle =
           ScalarPosition(*rig_.skeleton_, positions_, motion.hinge);
-      return HalfHinge(motion.parent_from_rest, motion.axis,
-                       angle - motion.rest_angle_rad);
+      return motion.parent_from_stem * HalfHinge(motion.stem_from_rest,
+                                                 motion.axis,
+                                                 angle - motion.rest_angle_rad);
     }
     if (motion.ball >= 0) {
       const int offset = rig_.skeleton_->span(motion.ball).quaternion_offset;
-      return HalfSwingAndTwist(motion.before *
+      return motion.parent_from_stem *
+             HalfSwingAndTwist(motion.before *
                                QuaternionXyzw(positions_.data() + offset) *
                                motion.after);
     }
     const Matrix3d parent_from_link =
         frame_.rotations_[rig_.links_[i].parent].transpose() *
         frame_.rotations_[i];
-    return HalfSwingAndTwist(Quaterniond(parent_from_link));
+    return motion.parent_from_stem *
+           HalfSwingAndTwist(motion.parent_from_stem.conjugate() *
+                             Quaterniond(parent_from_link));
   }
 
   // The plane through `center` of the joint at the start of link i, mitred.
@@ -156,7 +160,9 @@ class RigPose {
     ControlPlane plane = PlaneOf(rotation, center);
     const double fullness = rig_.fullness_[i];
     if (fullness == 0) return plane;
-    const Vector3d before = frame_.rotations_[rig_.links_[i].parent].col(0);
+    const Vector3d before =
+        frame_.rotations_[rig_.links_[i].parent] *
+        (rig_.joints_[i].parent_from_stem * Vector3d::UnitX());
     const Vector3d after = frame_.rotations_[i].col(0);
     Vector3d bend = after - before;
     bend -= bend.dot(rotation.col(0)) * rotation.col(0);
@@ -195,7 +201,7 @@ class RigPose {
     const double spacing = rig_.start_spacings_[i];
     // Where the branch lies in the parent at rest, and so do S0 and S1.
     const Matrix3d rest =
-        frame_.rotations_[parent] * motion.parent_from_rest.toRotationMatrix();
+        frame_.rotations_[parent] * motion.parent_from_stem.toRotationMatrix();
     const Vector3d root = frame_.origins_[parent] +
                           frame_.rotations_[parent] * motion.parent_origin;
     ControlPlane* stub = StubPlanes(rig_.stubs_[i]);

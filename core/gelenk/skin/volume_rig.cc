@@ -277,7 +277,8 @@ void VolumeRig::CompileJoints() {
     start_spacings_[i] = end_spacings_[i] = kSpacing * link.length_m;
     JointMotion& motion = joints_[i];
     motion.joint_from_link = link.joint_from_link.rotation.toRotationMatrix();
-    motion.parent_from_rest.setIdentity();
+    motion.parent_from_stem.setIdentity();
+    motion.stem_from_rest.setIdentity();
     motion.parent_origin.setZero();
     motion.axis.setZero();
     if (link.parent < 0) {
@@ -297,7 +298,8 @@ void VolumeRig::CompileJoints() {
     }
     const RigidTransform parent_from_link =
         world_from_links[link.parent].Inverse() * world_from_links[i];
-    motion.parent_from_rest = parent_from_link.rotation.normalized();
+    (is_branch(i) ? motion.parent_from_stem : motion.stem_from_rest) =
+        parent_from_link.rotation.normalized();
     motion.parent_origin = parent_from_link.translation;
     CompileMotion(i, world_from_joints);
   }
@@ -326,7 +328,7 @@ void VolumeRig::CompileMotion(int i, const WorldTransforms& world_from_joints) {
   } else if (joint.type == JointType::kSpherical) {
     motion.ball = moving;
     motion.after = moved_from_link;
-    motion.before = motion.parent_from_rest * moved_from_link.conjugate() *
+    motion.before = motion.stem_from_rest * moved_from_link.conjugate() *
                     QuaternionXyzw(rest_positions_.data() +
                                    skeleton_->span(moving).quaternion_offset)
                         .conjugate();

@@ -159,13 +159,18 @@ class VolumeRig {
     // The one hinge, or ball, between the links; -1 for anything else.
     int hinge = -1;
     int ball = -1;
-    // Of the ball: parent_from_link = before * its quaternion * after.
+    // Of the ball: stem_from_link = before * its quaternion * after.
     Eigen::Quaterniond before;
     Eigen::Quaterniond after;
     Eigen::Vector3d axis;  // link frame
     double rest_angle_rad = 0;
-    Eigen::Quaterniond parent_from_rest;  // parent link, link at rest
-    Eigen::Vector3d parent_origin;        // of this link at rest
+    // What is halved is the turn of the link against the stem: the parent for
+    // a continuation; for a branch what stands in the parent as the link does
+    // at rest, or a leg that hangs from a spine would be half turned before it
+    // moves.
+    Eigen::Quaterniond parent_from_stem;
+    Eigen::Quaterniond stem_from_rest;
+    Eigen::Vector3d parent_origin;  // of this link at rest
   };
 
   struct CompiledMuscle {

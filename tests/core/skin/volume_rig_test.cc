@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gelenk/math/rotation.h"
+#include "gelenk/skin/example_shapes.h"
 #include "tests/core/skin/skin_chains.h"
 #include "tests/testing/example_bodies.h"
 #include "tests/testing/random_pose.h"
@@ -261,6 +262,28 @@ TEST(VolumeRigTest, BranchMeetsItsStubSmoothly) {
                           .Jacobian())
                   .norm(),
               kRounding);
+  }
+}
+
+// Whichever way a branch points at rest, its stub is straight and as even as
+// the link that it leads to.
+TEST(VolumeRigTest, BranchIsStraightAtRest) {
+  for (absl::string_view name : SkinShapeNames()) {
+    const SkinShape shape = MakeSkinShape(name, 100).value();
+    const auto rig = VolumeRig::Create(shape.skeleton, shape.links).value();
+    EXPECT_TRUE(rig->FindFolds(rig->rest()).empty()) << name;
+    for (int i = 0; i < rig->link_count(); ++i) {
+      if (!rig->is_branch(i)) continue;
+      const BezierVolume& stub =
+          rig->rest().volume(rig->volume(i, VolumePart::kStub));
+      const Matrix3d jacobian = stub.Evaluate({0.5, 0, 0}).Jacobian();
+      const Matrix3d& frame = rig->rest().rotation(i);
+      EXPECT_LE(
+          (jacobian.col(0) - 3 * rig->start_spacing_m(i) * frame.col(0)).norm(),
+          kRounding);
+      EXPECT_LE((jacobian.rightCols<2>() - frame.rightCols<2>()).norm(),
+                kRounding);
+    }
   }
 }
 
