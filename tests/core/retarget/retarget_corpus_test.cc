@@ -5,10 +5,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "gelenk/import/gltf_import.h"
+#include "gelenk/import/gltf_reader.h"
 #include "gelenk/retarget/humanoid.h"
 #include "tests/testing/retarget_runs.h"
 
@@ -25,6 +30,23 @@ struct Corpus {
   std::vector<std::pair<std::string, std::shared_ptr<const BodyModel>>> targets;
 };
 
+// The characters among the glTF files: those that stand on two legs at rest.
+void AddGltfBodies(const std::filesystem::path& folder, Corpus& corpus) {
+  for (const auto& path : testing::FilesWith(folder, ".glb")) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const auto document = ReadGltf(bytes);
+    if (!document.ok()) continue;
+    const auto import = ImportGltf(*document);
+    if (!import.ok()) continue;
+    const auto map = ProposeJointMap(*import->skeleton);
+    if (!map.ok() || !map->HasLegs()) continue;
+    const auto model = MakeBodyModel(import->skeleton, *map);
+    if (!model.ok()) continue;
+    corpus.targets.emplace_back(path.stem().string(), *model);
+  }
+}
+
 Corpus ReadCorpus() {
   Corpus corpus;
   const auto humanoid = MakeHumanoid();
@@ -40,6 +62,7 @@ Corpus ReadCorpus() {
     if (clip->frame_count() < kMinContactFrames) continue;
     corpus.sources.push_back(testing::MakeSource(*std::move(clip)));
   }
+  AddGltfBodies(folder / "gltf", corpus);
   return corpus;
 }
 
