@@ -5,7 +5,9 @@
 
 #include <map>
 
+#include "absl/strings/match.h"
 #include "gelenk/retarget/humanoid.h"
+#include "gelenk/skeleton/skeleton_builder.h"
 #include "tests/testing/rig_family.h"
 #include "tests/testing/status_matchers.h"
 
@@ -68,6 +70,30 @@ TEST(JointMapTest, OverridesWinAndMayTakeRolesAway) {
   EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kHead), "neck");
   EXPECT_THAT(map->notes,
               ::testing::Contains(::testing::HasSubstr("left_toe")));
+}
+
+TEST(JointMapTest, ABodyWithoutArmsHasTheRest) {
+  const auto whole = BodyOf(RigFamilies()[0]);
+  SkeletonBuilder builder;
+  for (const Joint& joint : whole->joints()) {
+    if (absl::StrContains(joint.id, "Arm") ||
+        absl::StrContains(joint.id, "Hand") ||
+        absl::StrContains(joint.id, "Shoulder")) {
+      continue;
+    }
+    builder.AddJoint(joint);
+  }
+  const auto skeleton = *builder.Build();
+  const auto map = ProposeJointMap(*skeleton);
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_TRUE(map->HasLegs());
+  EXPECT_FALSE(map->HasArm(kLeft));
+  EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kHead), "mixamorig:Head");
+  EXPECT_FALSE(map->Has(BodyRole::kChest));
+  // Spine and neck are one chain.
+  EXPECT_EQ(map->neck.size(), 4);
+  EXPECT_THAT(map->notes,
+              ::testing::Contains(::testing::HasSubstr("left_hand")));
 }
 
 TEST(JointMapTest, ListsEveryBadOverride) {

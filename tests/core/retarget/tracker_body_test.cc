@@ -7,6 +7,7 @@
 #include "gelenk/math/rotation.h"
 #include "gelenk/retarget/retarget_clip.h"
 #include "tests/testing/body_clips.h"
+#include "tests/testing/rig_family.h"
 #include "tests/testing/status_matchers.h"
 #include "tests/testing/walking_bvh.h"
 
@@ -111,6 +112,44 @@ TEST(TrackerBodyTest, ThreeTrackersMakeAWholeBodyThatStandsAndWalks) {
   EXPECT_EQ(
       LimitExcess(*(*body)->model()->skeleton, (*body)->positions(), nullptr),
       0);
+}
+
+TEST(TrackerBodyTest, ItsBodyIsASourceLikeAnyOther) {
+  const Actor actor = WalkingActor(150);
+  const auto skeleton = testing::BodyOf(testing::RigFamilies()[0]);
+  const auto target = *MakeBodyModel(skeleton, *ProposeJointMap(*skeleton));
+  for (bool with_lower : {false, true}) {
+    const auto body = TrackerBody::Create();
+    ASSERT_TRUE(body.ok());
+    auto retargeter = Retargeter::Create((*body)->model(), target);
+    ASSERT_TRUE(retargeter.ok());
+    BodyPoseReader reader(target);
+    BodyPose pose;
+    for (int f = 0; f < actor.positions.cols(); ++f) {
+      ASSERT_TRUE((*body)
+                      ->Update(TrackersOn(*actor.model, actor.positions.col(f),
+                                          with_lower),
+                               kFrameTime)
+                      .ok());
+      ASSERT_TRUE(
+          (*retargeter)->Retarget((*body)->positions(), kFrameTime).ok());
+      reader.Read((*retargeter)->positions(), pose);
+      for (int side : kSides) {
+        ASSERT_LT((*retargeter)->report().hand_error_m[side], 0.01) << f;
+        for (int point = 0; point < kFootPointCount; ++point) {
+          ASSERT_GT(pose.foot_points[side][point].y() -
+                        target->planted_heights[side][point],
+                    -1e-3)
+              << f;
+        }
+      }
+    }
+    // It went where the actor went, by its own legs.
+    const Eigen::Vector3d way =
+        actor.positions.col(149).head<3>() - actor.positions.col(0).head<3>();
+    EXPECT_NEAR(pose.hip_center.z(),
+                way.z() * target->leg_length / actor.model->leg_length, 0.2);
+  }
 }
 
 TEST(TrackerBodyTest, MountsAreLearnedFromATPose) {
