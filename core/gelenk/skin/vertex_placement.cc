@@ -17,6 +17,8 @@ constexpr double kBlendReach = 1.5;
 // A stub gains hold of its vertices over this part of its length, so that its
 // parent need not be rigid where it starts.
 constexpr double kStubRamp = 1.0 / 3;
+// And loses hold of its parent's over this part of its first half.
+constexpr double kFlankRamp = 0.6;
 // Shares nearer to 1 than this are 1.
 constexpr double kWhole = 1e-9;
 
@@ -196,12 +198,15 @@ void VertexPlacer::AddShares(const Vector3d& point, Placement& placement,
                              &in_branch)) {
       continue;
     }
-    // What lies before the branch's joint is its parent's, a little way on.
+    // What is bound to the parent but lies beyond the branch's joint follows
+    // the branch a little way on: farther, it is the flank that an arm hangs
+    // by.
     const double u = in_branch.at.u;
-    const double ramp = behind ? Smoothstep(u / kStubRamp) : 1 - Smoothstep(u);
-    const double ramp_slope = behind
-                                  ? SmoothstepSlope(u / kStubRamp) / kStubRamp
-                                  : -SmoothstepSlope(u);
+    const double length = behind ? kStubRamp : kFlankRamp;
+    const double ramp =
+        behind ? Smoothstep(u / length) : 1 - Smoothstep(u / length);
+    const double ramp_slope =
+        (behind ? 1 : -1) * SmoothstepSlope(u / length) / length;
     const double x = (kBlendReach - in_branch.radius) / (kBlendReach - 1);
     BlendShare share;
     share.volume = in_branch.volume;
