@@ -41,7 +41,8 @@ double LargestOf(LevelStep::ConstVectorMap step) {
 
 }  // namespace
 
-void LevelDescent::SetProblem(const IkProblem& problem) {
+void LevelDescent::SetProblem(const IkProblem& problem, const GoalLevels& goals,
+                              const StepSpace& space) {
   const Skeleton& skeleton = problem.skeleton();
   stiffness_.assign(skeleton.velocity_count(), 1);
   for (int j = 0; j < skeleton.joint_count(); ++j) {
@@ -52,6 +53,19 @@ void LevelDescent::SetProblem(const IkProblem& problem) {
       stiffness_[v + k] = std::max(given[k], kLeastStiffness);
     }
   }
+  int held = 0;
+  int rows = 0;
+  for (int level = 0; level < goals.level_count(); ++level) {
+    held += goals.row_count(level);
+    rows = std::max(rows, goals.row_count(level));
+  }
+  step_.Reserve(space.size(), held, rows);
+  restoring_step_.Reserve(space.size(), held, 0);
+  restoring_space_ = space;
+  trial_.resize(skeleton.position_count());
+  damping_.resize(space.size());
+  correction_.resize(space.size());
+  deviations_.resize(held);
 }
 
 kernel::Attempt LevelDescent::Run(GoalLevels& goals, int level,
@@ -70,6 +84,7 @@ kernel::Attempt LevelDescent::Run(GoalLevels& goals, int level,
   const double stationary_gain =
       settings.bounded ? kBoundedGain : kStationaryGain;
   step_.SetShortensWish(settings.bounded);
+  step_.ForgetHolds();
   bool moved = true;
   bool at_positions = true;
   for (int iteration = 0;; ++iteration) {
@@ -189,6 +204,7 @@ bool LevelDescent::Restore(GoalLevels& goals, int level, const StepSpace& space,
 bool LevelDescent::RestoreAnew(GoalLevels& goals, int level,
                                const StepSpace& space, VectorView positions) {
   restoring_space_ = space;
+  restoring_step_.ForgetHolds();
   double last = 0;
   for (int round = 0; round < kThoroughRounds; ++round) {
     const double deviation = goals.Deviation(nullptr);

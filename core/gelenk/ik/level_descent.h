@@ -46,7 +46,9 @@ struct LevelSettings {
 
 class LevelDescent {
  public:
-  void SetProblem(const IkProblem& problem);
+  // Makes room for whatever a solve of `problem` may need.
+  void SetProblem(const IkProblem& problem, const GoalLevels& goals,
+                  const StepSpace& space);
 
   // Moves `positions`, which is inside `space`'s limits and where the levels
   // above `level` hold. `goals` is left there.

@@ -60,8 +60,7 @@ void SolveCholesky(const double* k, int size, double* b) {
 }  // namespace
 
 void LevelStep::Reserve(int column_count, int constraint_count, int row_count) {
-  if (column_count != column_count_)
-    std::fill(holds_.begin(), holds_.end(), Hold::kFree);
+  if (column_count != column_count_) ForgetHolds();
   column_count_ = column_count;
   constraint_count_ = 0;
   row_count_ = 0;
@@ -87,6 +86,10 @@ void LevelStep::Reserve(int column_count, int constraint_count, int row_count) {
   Grow(turned_, n * k);
   Grow(small_, k * k);
   null_space_.Reserve(column_count, constraint_count);
+}
+
+void LevelStep::ForgetHolds() {
+  std::fill(holds_.begin(), holds_.end(), Hold::kFree);
 }
 
 LevelStep::MatrixView LevelStep::AddConstraints(int count, bool at_least) {
@@ -158,6 +161,7 @@ bool LevelStep::SolveByBlocks() {
     AddScaled(1, move_.data(), step_.data(), column_count_);
     if (round == 0 && shortens_wish_) ShortenWish();
     if (ReleaseForRows()) continue;
+    std::fill_n(drops_.begin(), column_count_ + constraint_count_, 0);
     const bool dropped = DropWrong();
     if (!HoldViolated() && !dropped && !FlipOneSided()) return true;
   }

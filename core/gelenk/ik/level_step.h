@@ -45,6 +45,9 @@ class LevelStep {
   // and up to `row_count` of J. Forgets what was there.
   void Reserve(int column_count, int constraint_count, int row_count);
 
+  // Forgets what the last Solve held: answers depend on nothing before it.
+  void ForgetHolds();
+
   // Adds rows to A, zero until the caller fills them in; `at_least` or equal.
   MatrixView AddConstraints(int count, bool at_least);
   int constraint_count() const { return constraint_count_; }

@@ -6,7 +6,11 @@ namespace gelenk {
 namespace {
 
 bool IsOnRotationLimit(const Joint& joint, const Eigen::Quaterniond& rotation) {
-  JointLimits narrowed = joint.limits;
+  // Without the numbers' limits: nothing is allocated.
+  JointLimits narrowed;
+  narrowed.swing_cone_rad = joint.limits.swing_cone_rad;
+  narrowed.twist_lower_rad = joint.limits.twist_lower_rad;
+  narrowed.twist_upper_rad = joint.limits.twist_upper_rad;
   if (narrowed.swing_cone_rad) *narrowed.swing_cone_rad -= kOnBound;
   if (narrowed.twist_lower_rad) *narrowed.twist_lower_rad += kOnBound;
   if (narrowed.twist_upper_rad) *narrowed.twist_upper_rad -= kOnBound;

@@ -62,7 +62,7 @@ void PrioritizedSolver::Solve(const IkProblem& problem,
   } else {
     space_.Reset(skeleton, std::nullopt, nullptr, positions);
   }
-  descent_.SetProblem(problem);
+  descent_.SetProblem(problem, goals_, space_);
   // Starts from elsewhere would be out of bounds.
   const int budget = bounded ? 0 : RestartBudget(options, start);
   const LevelSettings settings = {options.position_tolerance_m,

@@ -36,8 +36,8 @@ struct Iterate {
 
 struct SolverOptions {
   SolverMethod method = SolverMethod::kAuto;
-  // Per attempt. When no restart converges the best pose gets one more attempt,
-  // with four times as many.
+  // Per attempt, and with priorities per level of it. When no restart converges
+  // the best pose gets one more attempt, with four times as many.
   int max_iterations = 50;
   // Attempts from other starts when one does not converge; unset means
   // kColdRestarts (of an arm kArmColdRestarts) from a cold start and none from

@@ -8,6 +8,7 @@
 #include "gelenk/ik/batch_solver.h"
 #include "gelenk/ik/fabrik_solver.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/ik/prioritized_solver.h"
 #include "gelenk/kinematics/jacobian.h"
 #include "gelenk/kinematics/kinematic_tree.h"
 #include "tests/testing/allocation_count.h"
@@ -145,6 +146,45 @@ TEST(SolverAllocationTest, ABatchOfArmsTheSecondTime) {
   positions.colwise() = start;
   const int before = AllocationCount();
   solver.Solve(problem, targets, {}, SolveStart::kCold, positions, report);
+  EXPECT_EQ(AllocationCount() - before, 0);
+}
+
+// Levels of priority on several skeletons in turn, some targets out of reach.
+TEST(SolverAllocationTest, WarmFramesOfLevels) {
+  Random random(9);
+  struct Actor {
+    IkProblem problem;
+    std::vector<Eigen::Vector3d> targets;
+    Eigen::VectorXd positions;
+  };
+  std::vector<Actor> actors;
+  for (int i = 0; i < 4; ++i) {
+    const auto skeleton = RandomSkeleton(random);
+    const Eigen::VectorXd start = RandomPoseWithinLimits(random, *skeleton);
+    std::vector<Goal> goals = PoseGoalsAt(*skeleton, start);
+    const std::string tip = skeleton->end_effectors()[0].id;
+    goals.push_back({"com", 1, CenterOfMassGoal{}, 1});
+    goals.push_back({"side", 1, HalfSpaceGoal{tip, {0, 1, 0}, 0}, 1});
+    goals.push_back({"posture", 1, PostureGoal{start, {}}, 2});
+    actors.push_back(
+        {IkProblem::Create(skeleton, std::move(goals)).value(), {}, start});
+    for (int frame = 0; frame < 10; ++frame) {
+      actors.back().targets.push_back(RandomPose(random, *skeleton).head(3));
+    }
+  }
+  PrioritizedSolver solver;
+  SolveReport report;
+  const auto solve_all = [&](int frame) {
+    for (Actor& actor : actors) {
+      const int com = static_cast<int>(actor.problem.goals().size()) - 3;
+      actor.problem.SetTarget(com, actor.targets[frame]);
+      solver.Solve(actor.problem, {}, SolveStart::kWarm, actor.positions,
+                   report);
+    }
+  };
+  solve_all(0);
+  const int before = AllocationCount();
+  for (int frame = 1; frame < 10; ++frame) solve_all(frame);
   EXPECT_EQ(AllocationCount() - before, 0);
 }
 
