@@ -8,6 +8,7 @@
 #include "gelenk/math/rotation.h"
 #include "gelenk/retarget/humanoid.h"
 #include "gelenk/retarget/retarget_clip.h"
+#include "gelenk/retarget/tracker_body.h"
 #include "gelenk/skeleton/skeleton_builder.h"
 #include "tests/testing/allocation_count.h"
 #include "tests/testing/retarget_runs.h"
@@ -164,10 +165,8 @@ TEST(PlantedFeetTest, ALimpSurvives) {
   EXPECT_GT(standing[kLeft] + standing[kRight], 20);
 }
 
-TEST(PlantedFeetTest, LimitsOfTheTargetHold) {
-  // Knees that bend by 15 degrees only: the walk has 38.
-  const auto clip = testing::BodyClipFromBvh(testing::WalkingBvh(150), "walk");
-  const SourceClip source = testing::MakeSource(*clip);
+// Knees that bend by 15 degrees only: the walk has 38.
+std::shared_ptr<const BodyModel> StiffHumanoid() {
   const auto free = MakeHumanoid();
   SkeletonBuilder builder;
   for (Joint joint : free->joints()) {
@@ -180,10 +179,15 @@ TEST(PlantedFeetTest, LimitsOfTheTargetHold) {
     builder.AddEndEffector(end);
   }
   const auto stiff = *builder.SetRestPositions(free->rest_positions()).Build();
-  const auto target = *MakeBodyModel(stiff, *ProposeJointMap(*stiff));
+  return *MakeBodyModel(stiff, *ProposeJointMap(*stiff));
+}
+
+TEST(PlantedFeetTest, LimitsOfTheTargetHold) {
+  const auto clip = testing::BodyClipFromBvh(testing::WalkingBvh(150), "walk");
+  const SourceClip source = testing::MakeSource(*clip);
   for (auto way :
        {testing::RetargetWay::kOnline, testing::RetargetWay::kOffline}) {
-    const auto run = RunRetarget(source, target, way);
+    const auto run = RunRetarget(source, StiffHumanoid(), way);
     ASSERT_TRUE(run.ok());
     EXPECT_GT(run->limited_part, 0.1);
     EXPECT_LT(run->limit_excess, 1e-6);
@@ -192,17 +196,45 @@ TEST(PlantedFeetTest, LimitsOfTheTargetHold) {
 }
 
 TEST(PlantedFeetTest, AWarmFrameTakesNoMemory) {
-  const auto clip = testing::BodyClipFromBvh(testing::WalkingBvh(100), "walk");
-  auto retargeter = Retargeter::Create(clip->model, Humanoid());
-  ASSERT_TRUE(retargeter.ok());
-  for (int f = 0; f < 50; ++f) {
-    ASSERT_TRUE((*retargeter)
-                    ->Retarget(clip->positions.col(f), clip->frame_time_s)
-                    .ok());
+  const auto clip = testing::BodyClipFromBvh(testing::WalkingBvh(300), "walk");
+  for (const auto& target : {Humanoid(), StiffHumanoid()}) {
+    auto retargeter = Retargeter::Create(clip->model, target);
+    ASSERT_TRUE(retargeter.ok());
+    double worst_excess = 0;
+    int before = 0;
+    for (int f = 0; f < 300; ++f) {
+      if (f == 150) before = testing::AllocationCount();
+      const absl::Status status =
+          (*retargeter)->Retarget(clip->positions.col(f), clip->frame_time_s);
+      ASSERT_TRUE(status.ok());
+      worst_excess =
+          std::max(worst_excess, (*retargeter)->report().limit_excess);
+    }
+    EXPECT_EQ(testing::AllocationCount(), before);
+    // The stiff one was solved again and again.
+    const bool is_stiff =
+        target->skeleton->joint(target->map.joint(BodyRole::kLeftShin))
+            .limits.swing_cone_rad < 1;
+    EXPECT_EQ(worst_excess > 0, is_stiff);
   }
-  const int before = testing::AllocationCount();
-  for (int f = 50; f < 100; ++f) {
-    (void)(*retargeter)->Retarget(clip->positions.col(f), clip->frame_time_s);
+}
+
+TEST(PlantedFeetTest, AWarmFrameOfTrackersTakesNoMemory) {
+  const auto body = TrackerBody::Create();
+  ASSERT_TRUE(body.ok());
+  TrackerFrame frame;
+  int before = 0;
+  for (int f = 0; f < 100; ++f) {
+    if (f == 50) before = testing::AllocationCount();
+    frame.head = RigidTransform{Eigen::Quaterniond::Identity(),
+                                Eigen::Vector3d(0, 1.6, 0.01 * f)};
+    for (int side : kSides) {
+      frame.hands[side] = RigidTransform{
+          Eigen::Quaterniond::Identity(),
+          Eigen::Vector3d(side == kLeft ? 0.4 : -0.4, 1.1, 0.2 + 0.01 * f)};
+    }
+    const absl::Status status = (*body)->Update(frame, kFrameTime);
+    ASSERT_TRUE(status.ok());
   }
   EXPECT_EQ(testing::AllocationCount(), before);
 }
