@@ -153,8 +153,10 @@ class MeshBinder {
           std::max(0.0, placer_.DistanceFromBone(point, vertex.link) -
                             rig_.link(vertex.link).half_extents_m.mean()));
     }
-    if (vertex.share_count > 0 &&
-        vertex.binding_class == BindingClass::kUnique) {
+    const bool near_branch =
+        vertex.share_count > 0 ||
+        rig_.volume_part(vertex.volume) == VolumePart::kStub;
+    if (near_branch && vertex.binding_class == BindingClass::kUnique) {
       vertex.binding_class = BindingClass::kBlend;
     }
   }

@@ -32,7 +32,7 @@ enum class BindingClass {
   kUnique,     // one chain holds it
   kAmbiguous,  // several do; see its candidates
   kOutside,    // none does: bound to the nearest
-  kBlend,      // near a branch: its parent and the stub share it
+  kBlend,      // near a branch: in its stub, or its parent's, too
   kUser,       // as somebody decided
 };
 inline constexpr int kBindingClassCount = 5;

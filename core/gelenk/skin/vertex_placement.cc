@@ -237,11 +237,10 @@ void VertexPlacer::AddShares(const Vector3d& point, Placement& placement,
       std::find_if(shares.begin() + first, shares.end(),
                    [](const BlendShare& s) { return s.share > 1 - kWhole; });
   if (whole != shares.end()) {
-    const BlendShare only = *whole;
+    placement.link = rig_.volume_link(whole->volume);
+    placement.volume = whole->volume;
+    placement.at = whole->at;
     shares.resize(first);
-    shares.push_back(only);
-    shares.back().share = 1;
-    shares.back().gradient.setZero();
     return;
   }
   if (shares.size() == first + 1) return;

@@ -40,7 +40,8 @@ class VertexPlacer {
   double DistanceFromBone(const Eigen::Vector3d& point, int link) const;
 
   // Appends what branches have of `point`, which is placed in `placement`, and
-  // turns that into a placement in the parent where it was one in a stub.
+  // turns that into a placement in the parent where it was one in a stub; or
+  // into one in a branch that has all of it.
   void AddShares(const Eigen::Vector3d& point, Placement& placement,
                  std::vector<BlendShare>& shares) const;
 
