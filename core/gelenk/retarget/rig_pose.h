@@ -2,8 +2,8 @@
 //
 // Joints are given orientations; their places follow from the bones. Joints
 // that nobody turns keep their place in the parent as in the reference pose.
-// What a joint cannot do it does not: a revolute one turns as near as it can, a
-// fixed one not at all.
+// Joints with a role turn as if they were balls; what single axes can do of it,
+// LimitKeeper finds.
 #ifndef GELENK_RETARGET_RIG_POSE_H_
 #define GELENK_RETARGET_RIG_POSE_H_
 
