@@ -313,18 +313,22 @@ void GoalLevels::SetDiagonal(int level, absl::Span<const double> damping,
   }
 }
 
-void GoalLevels::BindHalfSpaces(int level, const LevelStep& step) {
+bool GoalLevels::BindHalfSpaces(int level, const LevelStep& step) {
+  bool changed = false;
   int row = 0;
   for (size_t g = 0; g < states_.size(); ++g) {
     State& state = states_[g];
     if (state.level != level) continue;
     if (targets_[g].shape == GoalShape::kHalfSpace) {
-      state.bound = Counts(static_cast<int>(g), 0) && step.Counts(row);
+      const bool bound = Counts(static_cast<int>(g), 0) && step.Counts(row);
+      changed = changed || bound != state.bound;
+      state.bound = bound;
     }
     for (int r = 0; r < GoalLinearizer::RowCount(targets_[g]); ++r) {
       if (Counts(static_cast<int>(g), r)) ++row;
     }
   }
+  return changed;
 }
 
 }  // namespace gelenk

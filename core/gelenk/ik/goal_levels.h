@@ -77,8 +77,9 @@ class GoalLevels {
                    const ConstVectorView& positions, const StepSpace& space,
                    LevelStep& step) const;
   // After the step is solved: half-spaces that it stops at their plane stay
-  // bound to it, so that none is thrown far beyond by a long step.
-  void BindHalfSpaces(int level, const LevelStep& step);
+  // bound to it, so that none is thrown far beyond by a long step. True when
+  // that changed how far the level is from what it wants.
+  bool BindHalfSpaces(int level, const LevelStep& step);
 
  private:
   // Of one goal.

@@ -33,6 +33,14 @@ bool HasPosture(absl::Span<const Goal> goals) {
   });
 }
 
+// What a plant holds.
+void StorePose(const RigidTransform& world_pose, kernel::TaskTarget& target) {
+  Store(world_pose.translation, target.world_translation);
+  StoreRotation(world_pose.rotation.normalized(), target);
+}
+
+}  // namespace
+
 RigidTransform WorldFromEffector(const IkProblem& problem,
                                  absl::string_view effector_id,
                                  const ConstVectorView& positions) {
@@ -46,14 +54,6 @@ RigidTransform WorldFromEffector(const IkProblem& problem,
   }
   return problem.world_from_skeleton() * skeleton_from_effector;
 }
-
-// What a plant holds.
-void StorePose(const RigidTransform& world_pose, kernel::TaskTarget& target) {
-  Store(world_pose.translation, target.world_translation);
-  StoreRotation(world_pose.rotation.normalized(), target);
-}
-
-}  // namespace
 
 absl::StatusOr<IkProblem> IkProblem::Create(
     std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,

@@ -10,6 +10,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "absl/types/span.h"
 #include "gelenk/ik/goal.h"
 #include "gelenk/ik/sparse_tree.h"
@@ -123,6 +124,12 @@ class IkProblem {
   std::vector<int> tree_columns_;
   RigidTransform world_from_skeleton_;
 };
+
+// Where an end effector of the problem's skeleton is. Cost: linear in its
+// depth.
+RigidTransform WorldFromEffector(const IkProblem& problem,
+                                 absl::string_view effector_id,
+                                 const ConstVectorView& positions);
 
 }  // namespace gelenk
 

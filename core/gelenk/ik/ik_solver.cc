@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/half_space_overshoot.h"
 #include "gelenk/ik/solver_method.h"
 #include "gelenk/ik/stop_condition.h"
 
@@ -14,6 +15,9 @@ SolverMethod Choose(const SolverOptions& options) {
              ? SolverMethod::kLevenbergMarquardt
              : options.method;
 }
+
+// Beyond its plane by no more than this a point may stay that was behind it.
+constexpr double kMostOvershoot_m = 1e-3;
 
 struct Deadline {
   IkSolver::Clock clock;
@@ -73,13 +77,34 @@ void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
     case SolverMethod::kFabrik:
       return fabrik_.Solve(problem, options, positions, report, stop);
     default:
-      if (problem.needs_levels()) {
-        return prioritized_.Solve(problem, options, start, positions, report,
-                                  stop, bounds);
-      }
-      return levenberg_marquardt_.Solve(problem, options, start, positions,
-                                        report, stop, bounds);
+      return SolveByLevenbergMarquardt(problem, options, start, positions,
+                                       report, stop, bounds);
   }
+}
+
+void IkSolver::SolveByLevenbergMarquardt(const IkProblem& problem,
+                                         const SolverOptions& options,
+                                         SolveStart start, VectorView positions,
+                                         SolveReport& report,
+                                         const StopCondition& stop,
+                                         const StepBounds* bounds) {
+  if (problem.needs_levels()) {
+    prioritized_.Solve(problem, options, start, positions, report, stop,
+                       bounds);
+    return;
+  }
+  start_.assign(positions.begin(), positions.end());
+  levenberg_marquardt_.Solve(problem, options, start, positions, report, stop,
+                             bounds);
+  const Eigen::Map<const Eigen::VectorXd> before(start_.data(), start_.size());
+  if (report.outcome != SolveOutcome::kConverged ||
+      HalfSpaceOvershoot(problem, before, positions) <= kMostOvershoot_m) {
+    return;
+  }
+  const int iterations = report.iteration_count;
+  positions = before;
+  prioritized_.Solve(problem, options, start, positions, report, stop, bounds);
+  report.iteration_count += iterations;
 }
 
 }  // namespace gelenk

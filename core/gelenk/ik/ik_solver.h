@@ -4,9 +4,12 @@
 // working memory. Not thread-safe: one per thread. Deterministic unless a time
 // limit strikes. Levenberg-Marquardt allocates nothing once it has seen a
 // problem of that size; the others say for themselves. It goes level by level
-// (see PrioritizedSolver) where the problem needs that.
+// (see PrioritizedSolver) where the problem needs that, and where a long step
+// threw a point far beyond the plane that it was to come to.
 #ifndef GELENK_IK_IK_SOLVER_H_
 #define GELENK_IK_IK_SOLVER_H_
+
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/time/time.h"
@@ -19,6 +22,7 @@
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
 #include "gelenk/ik/step_bounds.h"
+#include "gelenk/ik/stop_condition.h"
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
@@ -52,6 +56,13 @@ class IkSolver {
 
  private:
   Clock clock_;
+  void SolveByLevenbergMarquardt(const IkProblem& problem,
+                                 const SolverOptions& options, SolveStart start,
+                                 VectorView positions, SolveReport& report,
+                                 const StopCondition& stop,
+                                 const StepBounds* bounds);
+
+  std::vector<double> start_;
   LevenbergMarquardtSolver levenberg_marquardt_;
   PrioritizedSolver prioritized_;
   NewtonSolver newton_{SolverMethod::kNewton};

@@ -118,6 +118,10 @@ kernel::Attempt LevelDescent::Run(GoalLevels& goals, int level,
     if (moved) Linearize(goals, level, space, positions);
     Damp(goals, level, factor, goal_energy, space, positions);
     step_.Solve();
+    if (moved && goals.BindHalfSpaces(level, step_)) {
+      goal_energy = goals.GoalEnergy(level);
+      energy = goal_energy + goals.PostureEnergy(level, positions);
+    }
     const double largest = LargestOf(step_.step());
     attempt.pushed_at_limit = step_.bound_force() > 0 &&
                               step_.bound_force() > 10 * step_.free_force();

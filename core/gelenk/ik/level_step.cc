@@ -27,6 +27,8 @@ constexpr double kHelps = 0.5;
 constexpr double kWrongSign = 1e-9;
 // Of a one-sided row, beyond which it is on the wrong side; weighted m.
 constexpr double kWrongSide = 1e-12;
+// A one-sided row that pulls back, and gets less than all but this part.
+constexpr double kOutweighed = 0.05;
 
 template <class Number>
 void Grow(std::vector<Number>& numbers, size_t count) {
@@ -383,8 +385,10 @@ bool LevelStep::FlipOneSided() {
   for (int r = 0; r < row_count_; ++r) {
     if (one_sided_[r] == 0) continue;
     const double beyond = Dot(J(r), step_.data(), column_count_) - e_[r];
+    // One that pulls back is let go where others outweigh it; damping does not.
+    const double slack = kWrongSide + kOutweighed * std::max(0.0, -e_[r]);
     const bool counts =
-        counts_[r] != 0 ? beyond <= kWrongSide : beyond < -kWrongSide;
+        counts_[r] != 0 ? beyond <= slack : beyond < -kWrongSide;
     if (counts == (counts_[r] != 0)) continue;
     counts_[r] = counts ? 1 : 0;
     flipped = true;

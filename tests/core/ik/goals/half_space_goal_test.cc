@@ -46,6 +46,37 @@ TEST(HalfSpaceGoalTest, LiftsWhatIsBehind) {
   EXPECT_LE(reached, height + 0.01 + 1e-3);
 }
 
+// A long step is not to throw it far beyond; by its own solver it does.
+TEST(HalfSpaceGoalTest, EndsOnThePlaneFromFarBehindIt) {
+  const auto leg = Leg(true);
+  const Eigen::VectorXd start = HingedLegAt(0.4, 0.8);
+  const double height = OriginOf(*leg, start, "sole").y();
+  for (double depth : {0.02, 0.1, 0.3, 0.5}) {
+    const Solved solved = SolveGoals(
+        leg, {GoalOf(HalfSpaceGoal{"sole", {0, 1, 0}, height + depth})}, start);
+    EXPECT_EQ(solved.report.outcome, SolveOutcome::kConverged);
+    EXPECT_NEAR(OriginOf(*leg, solved.positions, "sole").y(), height + depth,
+                1e-3)
+        << depth;
+  }
+}
+
+// What another goal wants on the free side is no overshoot.
+TEST(HalfSpaceGoalTest, GoesBeyondThePlaneWhereAnotherGoalWantsIt) {
+  const auto leg = Leg(true);
+  const Eigen::VectorXd start = HingedLegAt(0.4, 0.8);
+  const Eigen::Vector3d sole = OriginOf(*leg, start, "sole");
+  const Eigen::Vector3d target = sole + Eigen::Vector3d(0.02, 0.3, 0.1);
+  const Solved solved =
+      SolveGoals(leg,
+                 {PositionGoalFor("sole", target),
+                  GoalOf(HalfSpaceGoal{"sole", {0, 1, 0}, sole.y() + 0.1})},
+                 start);
+  EXPECT_EQ(solved.report.outcome, SolveOutcome::kConverged);
+  EXPECT_LT((OriginOf(*leg, solved.positions, "sole") - target).norm(),
+            kTolerance_m);
+}
+
 TEST(HalfSpaceGoalTest, DepthIsWhatIsLeft) {
   // A link of 1 m cannot lift its tip above 1 m.
   const auto chain = PlanarChain(Eigen::Vector3d::Zero(), {1});
