@@ -26,6 +26,15 @@ absl::StatusOr<BvhDocument> BvhFromClip(const BvhDocument& form,
                                         const BvhImport& import,
                                         const MotionClip& clip);
 
+// Any clip as a BVH file of its own, without a form: a joint per joint, ZXY
+// rotations, positions too for the root and for what slides; end effectors are
+// End Sites. The format knows no rest rotation, so that these are part of the
+// angles: the file's zero pose is not the skeleton's, every frame's world is.
+// Braces in names become underscores. Lengths in units of `unit_m`; at the
+// clip's frame time (see FrameTimeOf). INVALID_ARGUMENT unless unit_m > 0.
+absl::StatusOr<BvhDocument> BvhFromClip(const MotionClip& clip,
+                                        double unit_m = 0.01);
+
 }  // namespace gelenk
 
 #endif  // GELENK_FORMATS_BVH_CLIP_H_
