@@ -10,8 +10,8 @@
 //
 // Where a level above is out of reach its closest pose is a singular one (an
 // arm at full stretch): its Jacobian no longer says which ways lead away from
-// it. These are found by trying: a step that cannot be corrected shows by how
-// the level's gradient changed along it, and that way is barred.
+// it. Steps along these cannot be corrected and are shortened until they are
+// harmless, so this level comes nearer only slowly there.
 //
 // Deterministic. Keeps its memory. Not thread-safe.
 #ifndef GELENK_IK_LEVEL_DESCENT_H_
