@@ -29,7 +29,7 @@ namespace gelenk {
 // `frames` holds a pose a column, each of which passes CheckPositions, all
 // `frame_time_s` apart. At `cutoff_hz` half of a movement's power is left, at
 // twice that an eighth of its size. INVALID_ARGUMENT unless 0 < cutoff_hz <
-// kMaxCutoffPart of the frame rate. Cost: linear; 60 joints take about 20 us a
+// kMaxCutoffPart of the frame rate. Cost: linear; 60 joints take about 30 us a
 // frame.
 inline constexpr double kMaxCutoffPart = 0.4;
 absl::StatusOr<Eigen::MatrixXd> LowPass(const Skeleton& skeleton,

