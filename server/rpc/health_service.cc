@@ -48,7 +48,7 @@ class WatchHealthCall final : public Ticking {
     if (writing_ || finishing_) return;
     if (over) {
       finishing_ = true;
-      writer_.Finish(grpc::Status::CANCELLED, &finished_);
+      writer_.Finish(grpc::Status::CANCELLED, finished_.tag());
       return;
     }
     const auto status = IsKnown(request_.service())
@@ -58,16 +58,16 @@ class WatchHealthCall final : public Ticking {
     said_anything_ = true;
     response_.set_status(status);
     writing_ = true;
-    writer_.Write(response_, &written_);
+    writer_.Write(response_, written_.tag());
   }
 
  private:
   WatchHealthCall(Service* service, ServiceState* state, IoThread* thread)
       : service_(service), state_(state), thread_(thread), count_(*thread) {
-    context_.AsyncNotifyWhenDone(&cancelled_);
+    context_.AsyncNotifyWhenDone(cancelled_.tag());
     grpc::ServerCompletionQueue* queue = thread_->queue();
     service_->RequestWatch(&context_, &request_, &writer_, queue, queue,
-                           &started_);
+                           started_.tag());
   }
   ~WatchHealthCall() override {
     if (ticking_) thread_->RemoveTicking(this);

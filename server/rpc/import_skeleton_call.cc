@@ -46,8 +46,9 @@ ImportSkeletonCall::ImportSkeletonCall(
     IoThread* thread)
     : service_(service), state_(state), thread_(thread), count_(*thread) {
   grpc::ServerCompletionQueue* queue = thread_->queue();
-  context_.AsyncNotifyWhenDone(&done_);
-  service_->RequestImportSkeleton(&context_, &reader_, queue, queue, &started_);
+  context_.AsyncNotifyWhenDone(done_.tag());
+  service_->RequestImportSkeleton(&context_, &reader_, queue, queue,
+                                  started_.tag());
 }
 
 ImportSkeletonCall::~ImportSkeletonCall() {
@@ -74,7 +75,7 @@ void ImportSkeletonCall::OnStarted(bool ok) {
 void ImportSkeletonCall::Read() {
   last_read_ = absl::Now();
   reading_ = true;
-  reader_.Read(&request_, &read_);
+  reader_.Read(&request_, read_.tag());
 }
 
 void ImportSkeletonCall::Tick(absl::Time now) {
@@ -105,7 +106,8 @@ void ImportSkeletonCall::OnRead(bool ok) {
   }
   // The reads of a cancelled call end as if it was half-closed; OnDone, which
   // tells the difference, is right behind.
-  alarm_.Set(thread_->queue(), std::chrono::system_clock::now(), &settled_);
+  alarm_.Set(thread_->queue(), std::chrono::system_clock::now(),
+             settled_.tag());
 }
 
 void ImportSkeletonCall::OnSettled(bool) {
@@ -158,9 +160,9 @@ absl::Status ImportSkeletonCall::Import() {
 void ImportSkeletonCall::Finish(const absl::Status& status) {
   finishing_ = true;
   if (status.ok()) {
-    reader_.Finish(response_, grpc::Status::OK, &finished_);
+    reader_.Finish(response_, grpc::Status::OK, finished_.tag());
   } else {
-    reader_.FinishWithError(ToGrpc(status), &finished_);
+    reader_.FinishWithError(ToGrpc(status), finished_.tag());
   }
 }
 

@@ -23,7 +23,7 @@ IoThread::IoThread(std::unique_ptr<grpc::ServerCompletionQueue> queue,
 IoThread::~IoThread() { Join(); }
 
 void IoThread::Start() {
-  alarm_.Set(queue_.get(), After(kTick), &tick_);
+  alarm_.Set(queue_.get(), After(kTick), tick_.tag());
   thread_ = std::thread([this] { Loop(); });
 }
 
@@ -39,7 +39,7 @@ void IoThread::Join() {
 void IoThread::Loop() {
   void* tag;
   bool ok;
-  while (queue_->Next(&tag, &ok)) static_cast<Completion*>(tag)->Run(ok);
+  while (queue_->Next(&tag, &ok)) Completion::Arrive(tag, ok);
 }
 
 void IoThread::OnTick(bool) {
@@ -53,7 +53,7 @@ void IoThread::OnTick(bool) {
   for (Ticking* call : calls) {
     if (ticking_.contains(call)) call->Tick(now);
   }
-  alarm_.Set(queue_.get(), After(kTick), &tick_);
+  alarm_.Set(queue_.get(), After(kTick), tick_.tag());
 }
 
 }  // namespace gelenk::server

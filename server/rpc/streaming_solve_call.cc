@@ -38,7 +38,8 @@ StreamingSolveCall::StreamingSolveCall(
     IoThread* thread)
     : service_(service), state_(state), thread_(thread), count_(*thread) {
   grpc::ServerCompletionQueue* queue = thread_->queue();
-  service_->RequestStreamingSolve(&context_, &stream_, queue, queue, &started_);
+  service_->RequestStreamingSolve(&context_, &stream_, queue, queue,
+                                  started_.tag());
 }
 
 StreamingSolveCall::~StreamingSolveCall() {
@@ -139,7 +140,7 @@ void StreamingSolveCall::Advance() {
 
 void StreamingSolveCall::Finish() {
   finishing_ = true;
-  stream_.Finish(ToGrpc(close_status_), &finished_);
+  stream_.Finish(ToGrpc(close_status_), finished_.tag());
 }
 
 bool StreamingSolveCall::Consume(IkSolver& solver, bool heavy_allowed) {
@@ -226,7 +227,8 @@ void StreamingSolveCall::ConsumeOnWorker() {
     burst_begin_ = Now();
     if (has_message) Consume(solver, true);
     AnswerMerged(solver, true);
-    alarm_.Set(thread_->queue(), std::chrono::system_clock::now(), &worked_);
+    alarm_.Set(thread_->queue(), std::chrono::system_clock::now(),
+               worked_.tag());
   };
   // With the pool overrun the stream's own thread has to do.
   if (!state_->workers.Submit(work)) work(thread_->solver());
@@ -300,7 +302,7 @@ bool StreamingSolveCall::IsFull() const {
 
 void StreamingSolveCall::StartRead() {
   reading_ = true;
-  stream_.Read(request_.Renew(), &read_);
+  stream_.Read(request_.Renew(), read_.tag());
 }
 
 void StreamingSolveCall::StartWrite() {
@@ -310,7 +312,7 @@ void StreamingSolveCall::StartWrite() {
   filling_ = 1 - filling_;
   filled_bytes_ = 0;
   responses_[filling_].Renew();
-  stream_.Write(response, &written_);
+  stream_.Write(response, written_.tag());
 }
 
 void StreamingSolveCall::Tick(absl::Time now) {

@@ -41,7 +41,7 @@ class UnaryCall {
   explicit UnaryCall(const Method& method)
       : method_(method), count_(*method.thread) {
     method_.accept(&context_, &request_, &writer_, method_.thread->queue(),
-                   &started_);
+                   started_.tag());
   }
 
   void OnStarted(bool ok) {
@@ -60,9 +60,9 @@ class UnaryCall {
 
   void Finish(const absl::Status& status) {
     if (status.ok()) {
-      writer_.Finish(response_, grpc::Status::OK, &finished_);
+      writer_.Finish(response_, grpc::Status::OK, finished_.tag());
     } else {
-      writer_.FinishWithError(ToGrpc(status), &finished_);
+      writer_.FinishWithError(ToGrpc(status), finished_.tag());
     }
   }
 

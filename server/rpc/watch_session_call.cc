@@ -28,9 +28,9 @@ WatchSessionCall::WatchSessionCall(v1::SessionService::AsyncService* service,
                                    ServiceState* state, IoThread* thread)
     : service_(service), state_(state), thread_(thread), count_(*thread) {
   grpc::ServerCompletionQueue* queue = thread_->queue();
-  context_.AsyncNotifyWhenDone(&cancelled_);
+  context_.AsyncNotifyWhenDone(cancelled_.tag());
   service_->RequestWatchSession(&context_, &request_, &writer_, queue, queue,
-                                &started_);
+                                started_.tag());
 }
 
 void WatchSessionCall::OnStarted(bool ok) {
@@ -102,12 +102,13 @@ void WatchSessionCall::Look() {
     return Write();
   }
   alarm_set_ = true;
-  alarm_.Set(thread_->queue(), absl::ToChronoTime(now + interval_), &alarmed_);
+  alarm_.Set(thread_->queue(), absl::ToChronoTime(now + interval_),
+             alarmed_.tag());
 }
 
 void WatchSessionCall::Write() {
   last_write_ = absl::Now();
-  writer_.Write(response_, &written_);
+  writer_.Write(response_, written_.tag());
 }
 
 void WatchSessionCall::OnWritten(bool ok) {
@@ -115,7 +116,7 @@ void WatchSessionCall::OnWritten(bool ok) {
   if (said_ended_) return Finish(session_->ended());
   alarm_set_ = true;
   alarm_.Set(thread_->queue(), absl::ToChronoTime(last_write_ + interval_),
-             &alarmed_);
+             alarmed_.tag());
 }
 
 void WatchSessionCall::OnAlarm(bool) {
@@ -133,7 +134,7 @@ void WatchSessionCall::OnCancelled(bool) {
 void WatchSessionCall::Finish(const absl::Status& status) {
   if (finishing_) return;
   finishing_ = true;
-  writer_.Finish(ToGrpc(status), &finished_);
+  writer_.Finish(ToGrpc(status), finished_.tag());
 }
 
 void WatchSessionCall::OnFinished(bool) {

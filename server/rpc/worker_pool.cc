@@ -16,16 +16,20 @@ WorkerPool::WorkerPool(int threads, int max_waiting,
 
 WorkerPool::~WorkerPool() {
   {
-    absl::MutexLock lock(&mutex_);
+    std::lock_guard<std::mutex> lock(mutex_);
     stopping_ = true;
   }
+  changed_.notify_all();
   for (std::thread& thread : threads_) thread.join();
 }
 
 bool WorkerPool::Submit(Work work) {
-  absl::MutexLock lock(&mutex_);
-  if (waiting_.size() >= max_waiting_) return false;
-  waiting_.push_back(std::move(work));
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    if (waiting_.size() >= max_waiting_) return false;
+    waiting_.push_back(std::move(work));
+  }
+  changed_.notify_one();
   return true;
 }
 
@@ -34,8 +38,8 @@ void WorkerPool::Loop(InstructionSet instruction_set) {
   for (;;) {
     Work work;
     {
-      absl::MutexLock lock(&mutex_);
-      mutex_.Await(absl::Condition(this, &WorkerPool::HasWork));
+      std::unique_lock<std::mutex> lock(mutex_);
+      changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
       if (waiting_.empty()) return;
       work = std::move(waiting_.front());
       waiting_.pop_front();

@@ -3,13 +3,14 @@
 #ifndef GELENK_SERVER_RPC_WORKER_POOL_H_
 #define GELENK_SERVER_RPC_WORKER_POOL_H_
 
+#include <condition_variable>
 #include <deque>
 #include <functional>
+#include <mutex>
 #include <thread>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
-#include "absl/synchronization/mutex.h"
 #include "gelenk/ik/ik_solver.h"
 
 namespace gelenk::server {
@@ -28,12 +29,10 @@ class WorkerPool {
 
  private:
   void Loop(InstructionSet instruction_set);
-  bool HasWork() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
-    return stopping_ || !waiting_.empty();
-  }
 
   const size_t max_waiting_;
-  absl::Mutex mutex_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
   std::deque<Work> waiting_ ABSL_GUARDED_BY(mutex_);
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;

@@ -54,7 +54,7 @@ WorkspaceCall::WorkspaceCall(v1::KinematicsService::AsyncService* service,
     : service_(service), state_(state), thread_(thread), count_(*thread) {
   grpc::ServerCompletionQueue* queue = thread_->queue();
   service_->RequestComputeWorkspace(&context_, &request_, &writer_, queue,
-                                    queue, &started_);
+                                    queue, started_.tag());
 }
 
 void WorkspaceCall::OnStarted(bool ok) {
@@ -65,11 +65,12 @@ void WorkspaceCall::OnStarted(bool ok) {
   Start(service_, state_, thread_);
   const bool taken = state_->workers.Submit([this](IkSolver&) {
     status_ = Compute();
-    alarm_.Set(thread_->queue(), std::chrono::system_clock::now(), &computed_);
+    alarm_.Set(thread_->queue(), std::chrono::system_clock::now(),
+               computed_.tag());
   });
   if (taken) return;
   status_ = absl::ResourceExhaustedError("too many calls are waiting");
-  writer_.Finish(ToGrpc(status_), &finished_);
+  writer_.Finish(ToGrpc(status_), finished_.tag());
 }
 
 absl::Status WorkspaceCall::Compute() {
@@ -118,9 +119,9 @@ void WorkspaceCall::OnWritten(bool ok) {
 
 void WorkspaceCall::WriteNext() {
   if (status_.ok() && next_ < parts_.size()) {
-    writer_.Write(parts_[next_++], &written_);
+    writer_.Write(parts_[next_++], written_.tag());
   } else {
-    writer_.Finish(ToGrpc(status_), &finished_);
+    writer_.Finish(ToGrpc(status_), finished_.tag());
   }
 }
 

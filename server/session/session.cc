@@ -84,7 +84,7 @@ Session::Session(std::string name, std::string skeleton_name,
 }
 
 absl::Status Session::Claim(DriverId driver, bool take_over, absl::Time now) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   if (!ended_.ok()) return ended_;
   if (driver_ && *driver_ != driver && !take_over) {
     return absl::FailedPreconditionError(absl::StrCat(
@@ -96,12 +96,12 @@ absl::Status Session::Claim(DriverId driver, bool take_over, absl::Time now) {
 }
 
 void Session::Release(DriverId driver) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   if (driver_ == driver) driver_.reset();
 }
 
 absl::Status Session::CheckDriver(DriverId driver) const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   return CheckDriverLocked(driver);
 }
 
@@ -118,7 +118,7 @@ absl::Status Session::CheckDriverLocked(DriverId driver) const {
 }
 
 absl::Status Session::Resume(DriverId driver, const ResumeState& state) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
     return status;
   }
@@ -151,7 +151,7 @@ absl::Status Session::Resume(DriverId driver, const ResumeState& state) {
 
 absl::Status Session::Apply(DriverId driver, InputFrame& frame,
                             absl::Time now) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
     return status;
   }
@@ -207,7 +207,7 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
 }
 
 bool Session::IsHeavy() const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   const SolveStart start = cold_ ? SolveStart::kCold : SolveStart::kWarm;
   return RestartBudget(options_, start) > 0 ||
          options_.detail == ReportDetail::kDiagnosis;
@@ -215,7 +215,7 @@ bool Session::IsHeavy() const {
 
 absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
                             SolvedFrame& frame) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
     return status;
   }
@@ -256,17 +256,17 @@ void Session::NoteMotionLocked(SolvedFrame& frame) {
 }
 
 void Session::CopyPositions(Eigen::VectorXd& positions) const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   positions = positions_;
 }
 
 int64_t Session::sequence_number() const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   return sequence_number_;
 }
 
 SessionSnapshot Session::Snapshot() const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   return {StateLocked(), last_driven_ + idle_ttl_, revision_, motion_};
 }
 
@@ -286,7 +286,7 @@ absl::Status Session::Update(
     std::optional<int64_t> revision, absl::Time now) {
   // Held all along, so that no solve in between is lost; nobody waits, for
   // nobody drives.
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   if (absl::Status status = CheckDriverLocked(kUnaryDriver); !status.ok()) {
     return status;
   }
@@ -318,7 +318,7 @@ absl::Status Session::Update(
 bool Session::CopyIfNewer(uint64_t& version, Eigen::VectorXd& positions,
                           RigidTransform& world_from_skeleton,
                           int64_t& sequence_number) const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   if (version_ == version) return false;
   version = version_;
   positions = positions_;
@@ -329,22 +329,22 @@ bool Session::CopyIfNewer(uint64_t& version, Eigen::VectorXd& positions,
 }
 
 void Session::End(absl::Status why) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   if (ended_.ok()) ended_ = std::move(why);
 }
 
 absl::Status Session::ended() const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   return ended_;
 }
 
 bool Session::IsExpired(absl::Time now) const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   return now >= last_driven_ + idle_ttl_;
 }
 
 size_t Session::ByteSize() const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   return sizeof(*this) + name_.capacity() + skeleton_name_.capacity() +
          affinity_key_.capacity() + problem_.ByteSize() - sizeof(problem_) +
          (positions_.size() + motion_.velocity.size()) * sizeof(double);

@@ -9,13 +9,13 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/status/status.h"
-#include "absl/synchronization/mutex.h"
 #include "absl/time/time.h"
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/ik_solver.h"
@@ -169,7 +169,7 @@ class Session {
   const std::shared_ptr<SharedTrees> trees_;
   const absl::Time create_time_;
 
-  mutable absl::Mutex mutex_;
+  mutable std::mutex mutex_;
   IkProblem problem_ ABSL_GUARDED_BY(mutex_);
   SolverOptions options_ ABSL_GUARDED_BY(mutex_);
   Eigen::VectorXd positions_ ABSL_GUARDED_BY(mutex_);

@@ -1,5 +1,7 @@
 #include "server/session/session_registry.h"
 
+#include <mutex>
+#include <shared_mutex>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -22,7 +24,7 @@ SessionRegistry::SessionRegistry(int max_sessions,
 absl::StatusOr<std::shared_ptr<Session>> SessionRegistry::Create(
     absl::string_view tenant, absl::string_view id,
     absl::string_view request_id, absl::Time now, const Make& make) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::shared_mutex> lock(mutex_);
   const std::string earlier = requests_.Find(tenant, request_id);
   if (!earlier.empty()) {
     const auto found = sessions_.find({std::string(tenant), earlier});
@@ -53,7 +55,7 @@ absl::StatusOr<std::shared_ptr<Session>> SessionRegistry::Create(
 
 absl::StatusOr<std::shared_ptr<Session>> SessionRegistry::Find(
     absl::string_view tenant, absl::string_view name, absl::Time now) const {
-  absl::ReaderMutexLock lock(&mutex_);
+  std::shared_lock<std::shared_mutex> lock(mutex_);
   const auto found = sessions_.find({std::string(tenant), std::string(name)});
   if (found == sessions_.end() || found->second->IsExpired(now)) {
     return NoSuchResource(name);
@@ -63,7 +65,7 @@ absl::StatusOr<std::shared_ptr<Session>> SessionRegistry::Find(
 
 absl::Status SessionRegistry::Delete(absl::string_view tenant,
                                      absl::string_view name) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::shared_mutex> lock(mutex_);
   const auto found = sessions_.find({std::string(tenant), std::string(name)});
   if (found == sessions_.end()) return NoSuchResource(name);
   found->second->End(
@@ -75,7 +77,7 @@ absl::Status SessionRegistry::Delete(absl::string_view tenant,
 std::vector<std::shared_ptr<Session>> SessionRegistry::List(
     absl::string_view tenant, absl::string_view after, size_t limit,
     absl::Time now) const {
-  absl::ReaderMutexLock lock(&mutex_);
+  std::shared_lock<std::shared_mutex> lock(mutex_);
   std::vector<std::shared_ptr<Session>> page;
   auto it = sessions_.upper_bound({std::string(tenant), std::string(after)});
   for (; it != sessions_.end() && it->first.first == tenant; ++it) {
@@ -86,7 +88,7 @@ std::vector<std::shared_ptr<Session>> SessionRegistry::List(
 }
 
 int SessionRegistry::Sweep(absl::Time now) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::shared_mutex> lock(mutex_);
   int count = 0;
   for (auto it = sessions_.begin(); it != sessions_.end();) {
     if (!it->second->IsExpired(now)) {
@@ -103,7 +105,7 @@ int SessionRegistry::Sweep(absl::Time now) {
 absl::Status SessionRegistry::RemoveUnused(
     absl::string_view tenant, absl::string_view skeleton_name, absl::Time now,
     const std::function<absl::Status()>& remove) const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::shared_mutex> lock(mutex_);
   for (const auto& [key, session] : sessions_) {
     if (key.first == tenant && session->skeleton_name() == skeleton_name &&
         !session->IsExpired(now)) {
@@ -115,7 +117,7 @@ absl::Status SessionRegistry::RemoveUnused(
 }
 
 int SessionRegistry::size() const {
-  absl::ReaderMutexLock lock(&mutex_);
+  std::shared_lock<std::shared_mutex> lock(mutex_);
   return static_cast<int>(sessions_.size());
 }
 

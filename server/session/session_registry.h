@@ -7,13 +7,13 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <shared_mutex>
 #include <string>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "absl/synchronization/mutex.h"
 #include "absl/time/time.h"
 #include "server/session/request_log.h"
 #include "server/session/session.h"
@@ -64,7 +64,7 @@ class SessionRegistry {
  private:
   const int max_sessions_;
   const std::function<uint64_t()> random_;
-  mutable absl::Mutex mutex_;
+  mutable std::shared_mutex mutex_;
   std::map<ResourceKey, std::shared_ptr<Session>> sessions_
       ABSL_GUARDED_BY(mutex_);
   RequestLog requests_ ABSL_GUARDED_BY(mutex_);

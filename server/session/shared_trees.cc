@@ -51,7 +51,7 @@ absl::StatusOr<IkProblem> SharedTrees::CreateProblem(
 std::shared_ptr<const SparseTree> SharedTrees::Find(
     absl::Span<const EffectorTask> tasks) {
   std::string key = BitsOf(tasks);
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   const auto found = trees_.find(key);
   if (found != trees_.end()) {
     if (std::shared_ptr<const SparseTree> tree = found->second.lock()) {
@@ -67,7 +67,7 @@ std::shared_ptr<const SparseTree> SharedTrees::Find(
 }
 
 int SharedTrees::tree_count() const {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::mutex> lock(mutex_);
   return static_cast<int>(
       std::count_if(trees_.begin(), trees_.end(),
                     [](const auto& entry) { return !entry.second.expired(); }));

@@ -8,12 +8,12 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
-#include "absl/synchronization/mutex.h"
 #include "absl/types/span.h"
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/solver_options.h"
@@ -39,7 +39,7 @@ class SharedTrees {
   std::shared_ptr<const SparseTree> Find(absl::Span<const EffectorTask> tasks);
 
   const std::shared_ptr<const Skeleton> skeleton_;
-  mutable absl::Mutex mutex_;
+  mutable std::mutex mutex_;
   // By the bits of the tasks.
   std::map<std::string, std::weak_ptr<const SparseTree>> trees_
       ABSL_GUARDED_BY(mutex_);

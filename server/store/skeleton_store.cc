@@ -1,5 +1,7 @@
 #include "server/store/skeleton_store.h"
 
+#include <mutex>
+#include <shared_mutex>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -13,7 +15,7 @@ SkeletonStore::SkeletonStore(Bounds bounds, std::function<uint64_t()> random)
 absl::StatusOr<StoredSkeleton> SkeletonStore::Create(
     absl::string_view tenant, absl::string_view id,
     absl::string_view request_id, StoredSkeleton skeleton) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::shared_mutex> lock(mutex_);
   const std::string earlier = requests_.Find(tenant, request_id);
   if (!earlier.empty()) {
     const auto found = skeletons_.find({std::string(tenant), earlier});
@@ -42,7 +44,7 @@ absl::StatusOr<StoredSkeleton> SkeletonStore::Create(
 
 absl::StatusOr<StoredSkeleton> SkeletonStore::Find(
     absl::string_view tenant, absl::string_view name) const {
-  absl::ReaderMutexLock lock(&mutex_);
+  std::shared_lock<std::shared_mutex> lock(mutex_);
   const auto found = skeletons_.find({std::string(tenant), std::string(name)});
   if (found == skeletons_.end()) return NoSuchResource(name);
   return found->second;
@@ -50,7 +52,7 @@ absl::StatusOr<StoredSkeleton> SkeletonStore::Find(
 
 absl::Status SkeletonStore::Delete(absl::string_view tenant,
                                    absl::string_view name) {
-  absl::MutexLock lock(&mutex_);
+  std::lock_guard<std::shared_mutex> lock(mutex_);
   const auto found = skeletons_.find({std::string(tenant), std::string(name)});
   if (found == skeletons_.end()) return NoSuchResource(name);
   bytes_ -= found->second.skeleton->ByteSize();
@@ -61,7 +63,7 @@ absl::Status SkeletonStore::Delete(absl::string_view tenant,
 std::vector<StoredSkeleton> SkeletonStore::List(absl::string_view tenant,
                                                 absl::string_view after,
                                                 size_t limit) const {
-  absl::ReaderMutexLock lock(&mutex_);
+  std::shared_lock<std::shared_mutex> lock(mutex_);
   std::vector<StoredSkeleton> page;
   auto it = skeletons_.upper_bound({std::string(tenant), std::string(after)});
   for (; it != skeletons_.end() && it->first.first == tenant; ++it) {

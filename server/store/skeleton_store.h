@@ -7,13 +7,13 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <shared_mutex>
 #include <string>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "absl/synchronization/mutex.h"
 #include "absl/time/time.h"
 #include "gelenk/skeleton/skeleton.h"
 #include "server/session/request_log.h"
@@ -60,7 +60,7 @@ class SkeletonStore {
  private:
   const Bounds bounds_;
   const std::function<uint64_t()> random_;
-  mutable absl::Mutex mutex_;
+  mutable std::shared_mutex mutex_;
   std::map<ResourceKey, StoredSkeleton> skeletons_ ABSL_GUARDED_BY(mutex_);
   size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;
   RequestLog requests_ ABSL_GUARDED_BY(mutex_);

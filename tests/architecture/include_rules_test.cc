@@ -82,7 +82,8 @@ const std::vector<Room>& House() {
     // rpc: convert, call, convert, return.
     {"server/rpc/",     {kStd, "Eigen/", "absl/", kCore, kGenerated,
                          kInternal, kConvert, kGrpc, kHealth,
-                         "google/protobuf/", kOptions, kVersion, kClock, "server/rpc/",
+                         "google/protobuf/", "sanitizer/", kOptions, kVersion,
+                         kClock, "server/rpc/",
                          "server/session/", "server/store/"}, {kClient}},
 
     // ops: what a running server needs around the calls.

@@ -4,10 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <condition_variable>
+#include <mutex>
 #include <set>
 #include <vector>
 
-#include "absl/synchronization/mutex.h"
 #include "absl/synchronization/notification.h"
 
 namespace gelenk::server {
@@ -52,18 +53,19 @@ TEST(WorkerPoolTest, RefusesMoreThanMayWait) {
 
 TEST(WorkerPoolTest, GivesEachThreadItsSolver) {
   constexpr int kThreads = 3;
-  absl::Mutex mutex;
+  std::mutex mutex;
+  std::condition_variable came;
   std::set<IkSolver*> solvers;
   {
     WorkerPool pool(kThreads, 100, InstructionSet::kBaseline);
     for (int i = 0; i < kThreads; ++i) {
       ASSERT_TRUE(pool.Submit([&](IkSolver& solver) {
         EXPECT_EQ(solver.instruction_set(), InstructionSet::kBaseline);
-        const auto all_here = [&solvers] { return solvers.size() == kThreads; };
-        absl::MutexLock lock(&mutex);
+        std::unique_lock<std::mutex> lock(mutex);
         solvers.insert(&solver);
         // Holds its thread until each one has had its turn.
-        mutex.Await(absl::Condition(&all_here));
+        came.notify_all();
+        came.wait(lock, [&solvers] { return solvers.size() == kThreads; });
       }));
     }
   }
