@@ -29,12 +29,15 @@ struct Command {
 
 // Each adds its options to `app`; `run` is for when it was parsed.
 Command AddBenchCommand(CLI::App& app);
+Command AddClipCommand(CLI::App& app);
 Command AddDhCommand(CLI::App& app);
 Command AddExamplesCommand(CLI::App& app);
 Command AddInfoCommand(CLI::App& app);
 Command AddFkCommand(CLI::App& app);
 Command AddIkCommand(CLI::App& app);
+Command AddMapCommand(CLI::App& app);
 Command AddPlayCommand(CLI::App& app);
+Command AddRetargetCommand(CLI::App& app);
 Command AddSessionsCommand(CLI::App& app);
 Command AddTwoBoneCommand(CLI::App& app);
 Command AddTwoLinkCommand(CLI::App& app);

@@ -68,10 +68,11 @@ int main(int argc, char** argv) {
   app.fallthrough();
   app.require_subcommand(1);
   const std::vector<Command> commands = {
-      AddInfoCommand(app),     AddFkCommand(app),       AddIkCommand(app),
-      AddPlayCommand(app),     AddSessionsCommand(app), AddBenchCommand(app),
-      AddExamplesCommand(app), AddDhCommand(app),       AddTwoLinkCommand(app),
-      AddTwoBoneCommand(app),  AddWorkspaceCommand(app)};
+      AddInfoCommand(app),     AddFkCommand(app),        AddIkCommand(app),
+      AddPlayCommand(app),     AddSessionsCommand(app),  AddBenchCommand(app),
+      AddExamplesCommand(app), AddDhCommand(app),        AddTwoLinkCommand(app),
+      AddTwoBoneCommand(app),  AddWorkspaceCommand(app), AddClipCommand(app),
+      AddRetargetCommand(app), AddMapCommand(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

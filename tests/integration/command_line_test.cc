@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -346,6 +347,58 @@ TEST_P(ServedCommandTest, PosesOfTheWrongSizeAreRefused) {
   const Ending ending = Run({"fk", "walk.bvh", "--pose", "1,2,3"});
   EXPECT_EQ(ending.exit_code, 1);
   EXPECT_THAT(ending.err, HasSubstr("got 3"));
+}
+
+TEST_F(CommandLineTest, ARetargetedWalkIsMeasured) {
+  const json made =
+      RunJson({"retarget", "walk.bvh", "--onto", "humanoid", "--out", "a.bvh"});
+  EXPECT_EQ(made["frames"], kFrames);
+  EXPECT_LE(made["penetration_max_m"].get<double>(), 1e-3);
+  EXPECT_EQ(made["beside_source"]["new_hyper_extended_frames"], 0);
+  const auto written = ReadBvh(Read(folder_ / "a.bvh"));
+  ASSERT_TRUE(written.ok()) << written.status();
+  EXPECT_EQ(written->frame_count(), kFrames);
+  // The file measures like what it was written from.
+  const json measured =
+      RunJson({"clip", "measure", "a.bvh", "--reference", "walk.bvh"});
+  EXPECT_NEAR(measured["skate_cm_s"].get<double>(),
+              made["skate_cm_s"].get<double>(), 0.5);
+  EXPECT_EQ(Run({"retarget", "walk.bvh", "--onto", "humanoid", "--out", "a.glb",
+                 "--live"})
+                .exit_code,
+            0);
+  EXPECT_THAT(Read(folder_ / "a.glb"), StartsWith("glTF"));
+}
+
+TEST_F(CommandLineTest, MapsAreProposedAndOverridden) {
+  const json map = RunJson({"map", "walk.bvh", "humanoid"});
+  std::map<std::string, std::string> joints;
+  for (const json& entry : map["source"])
+    joints[entry["role"]] = entry["joint"];
+  EXPECT_EQ(joints["left_foot"], "LeftFoot");
+  EXPECT_EQ(joints["head"], "Head");
+  EXPECT_THAT(map["target"], Not(IsEmpty()));
+  Write("bad.json", R"({"source": [{"role": "tail", "joint": "Hips"}]})");
+  const Ending bad = Run({"retarget", "walk.bvh", "--onto", "humanoid", "--out",
+                          "a.bvh", "--map", "bad.json"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("tail"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.bvh"));
+}
+
+TEST_F(CommandLineTest, ClipsAreSmoothedMirroredAndConverted) {
+  for (const char* step : {"smooth", "mirror"}) {
+    ASSERT_EQ(Run({"clip", step, "walk.bvh", "--out", "b.bvh"}).exit_code, 0);
+    const auto written = ReadBvh(Read(folder_ / "b.bvh"));
+    ASSERT_TRUE(written.ok()) << written.status();
+    EXPECT_EQ(written->frame_count(), kFrames);
+  }
+  EXPECT_EQ(Run({"clip", "convert", "walk.bvh", "--out", "b.glb"}).exit_code,
+            0);
+  EXPECT_THAT(Read(folder_ / "b.glb"), StartsWith("glTF"));
+  const Ending bad = Run({"clip", "convert", "walk.bvh", "--out", "b.fbx"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr(".glb"));
 }
 
 TEST_F(CommandLineTest, BadFilesAreToldByPlace) {

@@ -1,0 +1,162 @@
+// gelenk clip: motion files measured and processed.
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "client/cli/command.h"
+#include "client/cli/file_bytes.h"
+#include "client/cli/motion/body_file.h"
+#include "client/cli/motion/quality_text.h"
+#include "gelenk/formats/bvh_clip.h"
+#include "gelenk/formats/bvh_writer.h"
+#include "gelenk/import/gltf_writer.h"
+#include "gelenk/motion/low_pass.h"
+#include "gelenk/motion/mirror.h"
+
+namespace gelenk::cli {
+namespace {
+
+struct ClipOptions {
+  CLI::App* measure = nullptr;
+  CLI::App* smooth = nullptr;
+  CLI::App* mirror = nullptr;
+  CLI::App* convert = nullptr;
+  std::string path;
+  std::optional<double> unit_m;
+  std::string reference_path;
+  std::string out_path;
+  double cutoff_hz = 6;
+  Format format = Format::kTable;
+};
+
+absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
+  const absl::StatusOr<BodyFile> body =
+      ReadBodyFile(options.path, options.unit_m);
+  if (!body.ok()) return body.status();
+  std::optional<BodyFile> reference;
+  if (!options.reference_path.empty()) {
+    absl::StatusOr<BodyFile> read =
+        ReadBodyFile(options.reference_path, std::nullopt);
+    if (!read.ok()) return read.status();
+    reference = *std::move(read);
+  }
+  const absl::StatusOr<Measured> measured =
+      Measure(*body, reference ? &*reference : nullptr);
+  if (!measured.ok()) return measured.status();
+  *output += options.format == Format::kJson ? JsonText(MeasuredJson(*measured))
+                                             : MeasuredText(*measured);
+  return absl::OkStatus();
+}
+
+absl::Status Write(const BvhClip& file, const MotionClip& clip,
+                   const std::string& path) {
+  absl::StatusOr<std::string> text;
+  if (absl::EndsWithIgnoreCase(path, ".gltf")) {
+    text = WriteGltf(clip, GltfForm::kJson);
+  } else if (absl::EndsWithIgnoreCase(path, ".glb")) {
+    text = WriteGltf(clip, GltfForm::kBinary);
+  } else if (absl::EndsWithIgnoreCase(path, ".bvh")) {
+    const auto document = BvhFromClip(file.document, file.import, clip);
+    if (!document.ok()) return InFile(path, document.status());
+    text = WriteBvh(*document);
+  } else {
+    text = absl::InvalidArgumentError("want a .bvh, .gltf or .glb file");
+  }
+  if (!text.ok()) return InFile(path, text.status());
+  return WriteFile(path, *text);
+}
+
+// What smooth, mirror and convert make of a clip.
+absl::StatusOr<MotionClip> Processed(const ClipOptions& options,
+                                     const MotionClip& clip) {
+  if (options.smooth->parsed()) return LowPassClip(clip, options.cutoff_hz);
+  if (options.mirror->parsed()) {
+    const absl::StatusOr<MirrorMap> map = FindMirrorMap(*clip.skeleton());
+    if (!map.ok()) return map.status();
+    return MirrorClip(clip, *map);
+  }
+  return clip;
+}
+
+absl::Status RunProcess(const ClipOptions& options, std::string* output) {
+  const absl::StatusOr<BvhClip> file =
+      ReadBvhClip(options.path, options.unit_m);
+  if (!file.ok()) return file.status();
+  const absl::StatusOr<MotionClip> clip =
+      ClipFromBvh(file->document, file->import, BaseName(options.path));
+  if (!clip.ok()) return InFile(options.path, clip.status());
+  const absl::StatusOr<MotionClip> processed = Processed(options, *clip);
+  if (!processed.ok()) return InFile(options.path, processed.status());
+  if (absl::Status status = Write(*file, *processed, options.out_path);
+      !status.ok()) {
+    return status;
+  }
+  absl::StrAppend(output, "wrote ", options.out_path, "\n");
+  return absl::OkStatus();
+}
+
+CLI::App* AddStep(CLI::App& clip, const std::string& name,
+                  const std::string& description, ClipOptions* options) {
+  CLI::App* step = clip.add_subcommand(name, description);
+  step->add_option("FILE", options->path, "Motion capture (.bvh)")
+      ->required()
+      ->option_text("");
+  step->add_option("--unit", options->unit_m,
+                   "Metres per unit of the file; default: guessed")
+      ->check(Positive())
+      ->option_text("M");
+  return step;
+}
+
+void AddOut(CLI::App& step, ClipOptions* options) {
+  step.add_option("--out", options->out_path, "A .bvh, .gltf or .glb file")
+      ->required()
+      ->option_text("FILE");
+}
+
+}  // namespace
+
+Command AddClipCommand(CLI::App& app) {
+  auto options = std::make_shared<ClipOptions>();
+  CLI::App* clip =
+      app.add_subcommand("clip", "Measure and process motion files");
+  clip->require_subcommand(1);
+  options->measure = AddStep(*clip, "measure",
+                             "Skate, penetration, hyper-extension, jerk, "
+                             "jumps; see docs/motion-quality.md",
+                             options.get());
+  options->measure
+      ->add_option("--reference", options->reference_path,
+                   "The motion that FILE was made from: its contacts count, "
+                   "and ratios are printed")
+      ->option_text("SOURCE.bvh");
+  AddFormatOption(*options->measure, &options->format);
+  options->smooth = AddStep(*clip, "smooth",
+                            "Without tremor, and without delay", options.get());
+  options->smooth
+      ->add_option("--cutoff", options->cutoff_hz,
+                   "Where half of a movement's power is left, Hz; default 6")
+      ->check(Positive())
+      ->option_text("HZ");
+  AddOut(*options->smooth, options.get());
+  options->mirror =
+      AddStep(*clip, "mirror", "Left becomes right", options.get());
+  AddOut(*options->mirror, options.get());
+  options->convert =
+      AddStep(*clip, "convert", "The same motion as glTF", options.get());
+  AddOut(*options->convert, options.get());
+  clip->footer(
+      "Examples:\n"
+      "  gelenk clip measure walk.bvh\n"
+      "  gelenk clip smooth walk.bvh --cutoff 5 --out smooth.bvh\n"
+      "  gelenk clip convert walk.bvh --out walk.glb");
+  return {clip, [options](const GlobalOptions&, std::string* output) {
+            return options->measure->parsed() ? RunMeasure(*options, output)
+                                              : RunProcess(*options, output);
+          }};
+}
+
+}  // namespace gelenk::cli

@@ -1,0 +1,125 @@
+#include "client/cli/motion/body_file.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "client/cli/file_bytes.h"
+#include "gelenk/kinematics/forward_kinematics.h"
+#include "gelenk/motion/first_frame.h"
+#include "gelenk/retarget/floating_base.h"
+#include "gelenk/retarget/humanoid.h"
+
+namespace gelenk::cli {
+namespace {
+
+// A skeleton, from a file or bundled, with the motion that came with it.
+struct Source {
+  std::shared_ptr<const Skeleton> skeleton;
+  std::optional<BvhClip> clip;
+};
+
+absl::StatusOr<Source> ReadSource(const std::string& path,
+                                  std::optional<double> unit_m) {
+  const std::vector<absl::string_view> bundled = BundledSkeletonNames();
+  if (std::find(bundled.begin(), bundled.end(), path) != bundled.end()) {
+    return Source{BundledSkeleton(path).value(), std::nullopt};
+  }
+  absl::StatusOr<SkeletonFile> file = ReadSkeletonFile(path, unit_m);
+  if (!file.ok()) return file.status();
+  Source source = {std::move(file->skeleton), std::move(file->clip)};
+  if (absl::EndsWithIgnoreCase(path, ".urdf")) {
+    auto floating = WithFloatingBase(source.skeleton);
+    if (!floating.ok()) return InFile(path, floating.status());
+    source.skeleton = *std::move(floating);
+  }
+  return source;
+}
+
+absl::StatusOr<std::vector<JointMapOverride>> EntriesFrom(
+    const nlohmann::json& json, const char* key) {
+  std::vector<JointMapOverride> entries;
+  if (!json.contains(key)) return entries;
+  const nlohmann::json& list = json[key];
+  if (!list.is_array()) {
+    return absl::InvalidArgumentError(absl::StrCat(key, ": want a list"));
+  }
+  for (size_t i = 0; i < list.size(); ++i) {
+    const nlohmann::json& entry = list[i];
+    if (!entry.is_object() || !entry.contains("role") ||
+        !entry["role"].is_string() || !entry.contains("joint") ||
+        !entry["joint"].is_string()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          key, "[", i, "]: want \"role\" and \"joint\", both text"));
+    }
+    entries.push_back({entry["role"], entry["joint"]});
+  }
+  return entries;
+}
+
+}  // namespace
+
+absl::StatusOr<BodyFile> ReadBodyFile(
+    const std::string& path, std::optional<double> unit_m,
+    absl::Span<const JointMapOverride> overrides) {
+  absl::StatusOr<Source> source = ReadSource(path, unit_m);
+  if (!source.ok()) return source.status();
+  const std::shared_ptr<const Skeleton>& skeleton = source->skeleton;
+  BodyFile body;
+  body.name = BaseName(path);
+  int first = 0;
+  std::optional<ClipView> view;
+  if (source->clip && source->clip->frame_count() > 0) {
+    const Eigen::MatrixXd& poses = source->clip->poses;
+    first = FindFirstFrameJump(*skeleton, poses).has_value() ? 1 : 0;
+    body.frame_time_s = source->clip->document.frame_time_s;
+    view.emplace(ClipView{poses, body.frame_time_s, first});
+    body.positions = poses.rightCols(poses.cols() - first);
+  }
+  const ClipView* clip = view ? &*view : nullptr;
+  const absl::StatusOr<JointMap> map =
+      ProposeJointMap(*skeleton, overrides, clip);
+  if (!map.ok()) return InFile(path, map.status());
+  absl::StatusOr<std::shared_ptr<const BodyModel>> model =
+      MakeBodyModel(skeleton, *map, clip);
+  if (!model.ok()) return InFile(path, model.status());
+  body.model = *std::move(model);
+  if (first == 1) {
+    body.notes.push_back("frame 0 is no part of the motion and left out");
+  }
+  body.notes.insert(body.notes.end(), map->notes.begin(), map->notes.end());
+  body.notes.insert(body.notes.end(), body.model->notes.begin(),
+                    body.model->notes.end());
+  body.clip = std::move(source->clip);
+  return body;
+}
+
+std::vector<BodyPose> BodyPosesOf(const BodyModel& model,
+                                  const Eigen::MatrixXd& positions) {
+  std::vector<BodyPose> poses(positions.cols());
+  WorldTransforms world_from_joints;
+  for (int f = 0; f < positions.cols(); ++f) {
+    ForwardKinematics(*model.skeleton, positions.col(f), world_from_joints);
+    ReadBodyPose(model, world_from_joints, poses[f]);
+  }
+  return poses;
+}
+
+absl::StatusOr<MapFile> ReadMapFile(const std::string& path) {
+  const absl::StatusOr<std::string> bytes = ReadFile(path);
+  if (!bytes.ok()) return bytes.status();
+  const nlohmann::json json = nlohmann::json::parse(*bytes, nullptr, false);
+  if (!json.is_object()) {
+    return InFile(path, absl::InvalidArgumentError(
+                            "want JSON with \"source\" and \"target\""));
+  }
+  auto source = EntriesFrom(json, "source");
+  if (!source.ok()) return InFile(path, source.status());
+  auto target = EntriesFrom(json, "target");
+  if (!target.ok()) return InFile(path, target.status());
+  return MapFile{*std::move(source), *std::move(target)};
+}
+
+}  // namespace gelenk::cli

@@ -1,0 +1,55 @@
+// Files as bodies: a skeleton, which of its joints play which roles, and the
+// motion that came with it.
+#ifndef CLIENT_CLI_MOTION_BODY_FILE_H_
+#define CLIENT_CLI_MOTION_BODY_FILE_H_
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+#include "client/cli/skeleton_file.h"
+#include "gelenk/retarget/body_model.h"
+#include "gelenk/retarget/motion_quality.h"
+
+namespace gelenk::cli {
+
+struct BodyFile {
+  std::string name;
+  std::shared_ptr<const BodyModel> model;
+  // A column a frame; none for files without motion. A first frame that is no
+  // part of the motion is left out.
+  Eigen::MatrixXd positions;
+  double frame_time_s = 0;
+  // What a BVH file's own form is written back into.
+  std::optional<BvhClip> clip;
+  std::vector<std::string> notes;
+
+  bool has_motion() const { return positions.cols() > 0; }
+};
+
+// A file as ReadSkeletonFile takes it, or the name of a bundled skeleton
+// ("humanoid"). A robot gets a base that floats. Errors name the file; a body
+// without pelvis or limbs is INVALID_ARGUMENT.
+absl::StatusOr<BodyFile> ReadBodyFile(
+    const std::string& path, std::optional<double> unit_m,
+    absl::Span<const JointMapOverride> overrides = {});
+
+// The anatomical poses of a motion.
+std::vector<BodyPose> BodyPosesOf(const BodyModel& model,
+                                  const Eigen::MatrixXd& positions);
+
+// Both maps as a file has them: {"source": [{"role", "joint"}], "target": ..}.
+struct MapFile {
+  std::vector<JointMapOverride> source;
+  std::vector<JointMapOverride> target;
+};
+// INVALID_ARGUMENT naming file and entry.
+absl::StatusOr<MapFile> ReadMapFile(const std::string& path);
+
+}  // namespace gelenk::cli
+
+#endif  // CLIENT_CLI_MOTION_BODY_FILE_H_

@@ -1,0 +1,213 @@
+// gelenk retarget: motion onto another body. gelenk map: who plays what.
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/command.h"
+#include "client/cli/motion/body_file.h"
+#include "client/cli/motion/clip_writer.h"
+#include "client/cli/motion/quality_text.h"
+#include "client/cli/text/table.h"
+#include "gelenk/retarget/retarget_clip.h"
+
+namespace gelenk::cli {
+namespace {
+
+struct RetargetCommandOptions {
+  std::string path;
+  std::optional<double> unit_m;
+  std::string onto;
+  std::string out_path;
+  std::string map_path;
+  bool live = false;
+  Format format = Format::kTable;
+};
+
+struct MapOptions {
+  std::string path;
+  std::string onto;
+  Format format = Format::kTable;
+};
+
+// Frame by frame, as a live source would.
+absl::StatusOr<Eigen::MatrixXd> RetargetLive(const BodyFile& source,
+                                             const BodyFile& target) {
+  const auto retargeter = Retargeter::Create(source.model, target.model);
+  if (!retargeter.ok()) return retargeter.status();
+  Eigen::MatrixXd positions(target.model->skeleton->position_count(),
+                            source.positions.cols());
+  for (int f = 0; f < source.positions.cols(); ++f) {
+    const absl::Status status =
+        (*retargeter)->Retarget(source.positions.col(f), source.frame_time_s);
+    if (!status.ok()) return status;
+    positions.col(f) = (*retargeter)->positions();
+  }
+  return positions;
+}
+
+absl::StatusOr<Eigen::MatrixXd> Retarget(const BodyFile& source,
+                                         const BodyFile& target, bool live) {
+  if (live) return RetargetLive(source, target);
+  absl::StatusOr<RetargetedClip> clip = RetargetClip(
+      source.model, target.model, source.positions, source.frame_time_s);
+  if (!clip.ok()) return clip.status();
+  return std::move(clip->positions);
+}
+
+absl::Status RunRetarget(const RetargetCommandOptions& options,
+                         std::string* output) {
+  MapFile map;
+  if (!options.map_path.empty()) {
+    absl::StatusOr<MapFile> read = ReadMapFile(options.map_path);
+    if (!read.ok()) return read.status();
+    map = *std::move(read);
+  }
+  const absl::StatusOr<BodyFile> source =
+      ReadBodyFile(options.path, options.unit_m, map.source);
+  if (!source.ok()) return source.status();
+  if (!source->has_motion()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("\"", options.path, "\": no motion to retarget"));
+  }
+  const absl::StatusOr<BodyFile> target =
+      ReadBodyFile(options.onto, std::nullopt, map.target);
+  if (!target.ok()) return target.status();
+  const absl::StatusOr<Eigen::MatrixXd> positions =
+      Retarget(*source, *target, options.live);
+  if (!positions.ok()) return positions.status();
+  if (absl::Status status = WriteClip(*target, *positions, source->frame_time_s,
+                                      options.out_path);
+      !status.ok()) {
+    return status;
+  }
+  BodyFile made = *target;
+  made.positions = *positions;
+  made.frame_time_s = source->frame_time_s;
+  const absl::StatusOr<Measured> measured = Measure(made, &*source);
+  if (!measured.ok()) return measured.status();
+  if (options.format == Format::kJson) {
+    Json json = MeasuredJson(*measured);
+    json["frames"] = positions->cols();
+    json["source_notes"] = source->notes;
+    json["target_notes"] = target->notes;
+    json["written"] = {options.out_path};
+    *output += JsonText(json);
+    return absl::OkStatus();
+  }
+  for (const BodyFile* body : {&*source, &*target}) {
+    for (const std::string& note : body->notes) {
+      absl::StrAppend(output, body->name, ": ", note, "\n");
+    }
+  }
+  absl::StrAppend(output, MeasuredText(*measured), "wrote ", options.out_path,
+                  "\n");
+  return absl::OkStatus();
+}
+
+Json EntriesJson(const BodyFile& body) {
+  Json list = Json::array();
+  for (const JointMapEntry& entry :
+       EntriesOf(body.model->map, *body.model->skeleton)) {
+    list.push_back({{"role", entry.role},
+                    {"joint", entry.joint_id},
+                    {"confidence", entry.confidence},
+                    {"evidence", entry.evidence}});
+  }
+  return list;
+}
+
+std::string EntriesText(const BodyFile& body) {
+  Table table({{"ROLE"}, {"JOINT"}, {"CONFIDENCE", Align::kRight}, {"BY"}});
+  for (const JointMapEntry& entry :
+       EntriesOf(body.model->map, *body.model->skeleton)) {
+    table.AddRow({entry.role, entry.joint_id, Fixed(entry.confidence, 2),
+                  entry.evidence});
+  }
+  std::string text = absl::StrCat(body.name, "\n", table.ToString());
+  for (const std::string& note : body.notes) {
+    absl::StrAppend(&text, note, "\n");
+  }
+  return text;
+}
+
+absl::Status RunMap(const MapOptions& options, std::string* output) {
+  const absl::StatusOr<BodyFile> source =
+      ReadBodyFile(options.path, std::nullopt);
+  if (!source.ok()) return source.status();
+  std::optional<BodyFile> target;
+  if (!options.onto.empty()) {
+    absl::StatusOr<BodyFile> read = ReadBodyFile(options.onto, std::nullopt);
+    if (!read.ok()) return read.status();
+    target = *std::move(read);
+  }
+  if (options.format == Format::kJson) {
+    Json json = {{"source", EntriesJson(*source)}};
+    if (target) json["target"] = EntriesJson(*target);
+    *output += JsonText(json);
+    return absl::OkStatus();
+  }
+  *output += EntriesText(*source);
+  if (target) absl::StrAppend(output, "\n", EntriesText(*target));
+  return absl::OkStatus();
+}
+
+constexpr char kBody[] =
+    "Motion capture (.bvh), a robot (.urdf), a model (.gltf, .glb), a skeleton "
+    "(.json), or humanoid, a body of our own";
+
+}  // namespace
+
+Command AddRetargetCommand(CLI::App& app) {
+  auto options = std::make_shared<RetargetCommandOptions>();
+  CLI::App* retarget = app.add_subcommand(
+      "retarget", "A clip's motion onto another body, feet planted");
+  retarget->add_option("FILE", options->path, "Motion capture (.bvh)")
+      ->required()
+      ->option_text("");
+  retarget->add_option("--onto", options->onto, kBody)
+      ->required()
+      ->option_text("FILE|humanoid");
+  retarget
+      ->add_option("--out", options->out_path,
+                   "What comes out: .bvh, .gltf or .glb")
+      ->required()
+      ->option_text("FILE");
+  retarget
+      ->add_option("--map", options->map_path,
+                   "Who plays what where the proposal is wrong, as `gelenk map "
+                   "--format json` prints it; a role with an empty joint is "
+                   "nobody's")
+      ->option_text("MAP.json");
+  retarget->add_flag("--live", options->live,
+                     "Frame by frame without look-ahead, as a live source is "
+                     "retargeted");
+  retarget
+      ->add_option("--unit", options->unit_m,
+                   "Metres per unit of FILE; default: guessed")
+      ->check(Positive())
+      ->option_text("M");
+  AddFormatOption(*retarget, &options->format);
+  retarget->footer(
+      "Example:\n  gelenk retarget walk.bvh --onto humanoid --out out.bvh");
+  return {retarget, [options](const GlobalOptions&, std::string* output) {
+            return RunRetarget(*options, output);
+          }};
+}
+
+Command AddMapCommand(CLI::App& app) {
+  auto options = std::make_shared<MapOptions>();
+  CLI::App* map = app.add_subcommand(
+      "map", "Which joint plays which role of a body, and how sure that is");
+  map->add_option("FILE", options->path, kBody)->required()->option_text("");
+  map->add_option("ONTO", options->onto, "A second one")->option_text("");
+  AddFormatOption(*map, &options->format);
+  map->footer("Example:\n  gelenk map walk.bvh humanoid");
+  return {map, [options](const GlobalOptions&, std::string* output) {
+            return RunMap(*options, output);
+          }};
+}
+
+}  // namespace gelenk::cli
