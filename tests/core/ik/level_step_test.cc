@@ -16,7 +16,8 @@ using ::gelenk::testing::UniformIndex;
 using ::gelenk::testing::WithProbability;
 
 constexpr double kFeasible = 1e-9;
-// What a point gains that is feasible to no more than that, by forces up to 100.
+// What a point gains that is feasible to no more than that, by forces up to
+// 100.
 constexpr double kSameObjective = 1e-7;
 
 // A step's problem, and what it says about a point.
@@ -107,7 +108,8 @@ TEST(LevelStepTest, NoFeasiblePointIsBetter) {
       for (int k = 0; k < 60 && !p.IsFeasible(y); ++k) y *= 0.7;
       if (!p.IsFeasible(y)) continue;
       for (double part : {1e-3, 0.1, 1.0}) {
-        EXPECT_GE(p.Objective(x + part * (y - x)), objective - kSameObjective) << trial;
+        EXPECT_GE(p.Objective(x + part * (y - x)), objective - kSameObjective)
+            << trial;
       }
     }
   }
