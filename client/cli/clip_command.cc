@@ -9,10 +9,11 @@
 #include "client/cli/command.h"
 #include "client/cli/file_bytes.h"
 #include "client/cli/motion/body_file.h"
+#include "client/cli/motion/clip_writer.h"
 #include "client/cli/motion/quality_text.h"
 #include "gelenk/formats/bvh_clip.h"
-#include "gelenk/formats/bvh_writer.h"
-#include "gelenk/import/gltf_writer.h"
+#include "gelenk/motion/clip_frames.h"
+#include "gelenk/motion/first_frame.h"
 #include "gelenk/motion/low_pass.h"
 #include "gelenk/motion/mirror.h"
 
@@ -51,24 +52,6 @@ absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
   return absl::OkStatus();
 }
 
-absl::Status Write(const BvhClip& file, const MotionClip& clip,
-                   const std::string& path) {
-  absl::StatusOr<std::string> text;
-  if (absl::EndsWithIgnoreCase(path, ".gltf")) {
-    text = WriteGltf(clip, GltfForm::kJson);
-  } else if (absl::EndsWithIgnoreCase(path, ".glb")) {
-    text = WriteGltf(clip, GltfForm::kBinary);
-  } else if (absl::EndsWithIgnoreCase(path, ".bvh")) {
-    const auto document = BvhFromClip(file.document, file.import, clip);
-    if (!document.ok()) return InFile(path, document.status());
-    text = WriteBvh(*document);
-  } else {
-    text = absl::InvalidArgumentError("want a .bvh, .gltf or .glb file");
-  }
-  if (!text.ok()) return InFile(path, text.status());
-  return WriteFile(path, *text);
-}
-
 // What smooth, mirror and convert make of a clip.
 absl::StatusOr<MotionClip> Processed(const ClipOptions& options,
                                      const MotionClip& clip) {
@@ -82,15 +65,28 @@ absl::StatusOr<MotionClip> Processed(const ClipOptions& options,
 }
 
 absl::Status RunProcess(const ClipOptions& options, std::string* output) {
+  if (!absl::EndsWithIgnoreCase(options.path, ".bvh")) {
+    return InFile(options.path, absl::InvalidArgumentError("want a .bvh file"));
+  }
   const absl::StatusOr<BvhClip> file =
       ReadBvhClip(options.path, options.unit_m);
   if (!file.ok()) return file.status();
   const absl::StatusOr<MotionClip> clip =
       ClipFromBvh(file->document, file->import, BaseName(options.path));
   if (!clip.ok()) return InFile(options.path, clip.status());
-  const absl::StatusOr<MotionClip> processed = Processed(options, *clip);
+  absl::StatusOr<MotionClip> motion = clip;
+  if (options.smooth->parsed() &&
+      FindFirstFrameJump(*file->import.skeleton, file->poses)) {
+    // A first frame that is no part of the motion would be smeared over it.
+    absl::StrAppend(output, "frame 0 is no part of the motion and left out\n");
+    motion = ClipFromFrames(clip->skeleton(),
+                            file->poses.rightCols(file->frame_count() - 1),
+                            clip->properties());
+    if (!motion.ok()) return InFile(options.path, motion.status());
+  }
+  const absl::StatusOr<MotionClip> processed = Processed(options, *motion);
   if (!processed.ok()) return InFile(options.path, processed.status());
-  if (absl::Status status = Write(*file, *processed, options.out_path);
+  if (absl::Status status = WriteClip(*processed, &*file, options.out_path);
       !status.ok()) {
     return status;
   }

@@ -1,5 +1,8 @@
 #include "client/cli/ik_result_text.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+
 #include <vector>
 
 #include "absl/strings/ascii.h"
@@ -19,26 +22,26 @@ std::string OutcomeName(v1::SolveReport::Outcome outcome) {
   return absl::AsciiStrToLower(absl::StripPrefix(name, "OUTCOME_"));
 }
 
-const std::string& EffectorOf(const v1::Goal& goal) {
-  switch (goal.kind_case()) {
-    case v1::Goal::kRotation:
-      return goal.rotation().end_effector_id();
-    case v1::Goal::kPose:
-      return goal.pose().end_effector_id();
-    default:
-      return goal.position().end_effector_id();
-  }
+// The member of Goal.kind that is set; null for none.
+const google::protobuf::FieldDescriptor* KindFieldOf(const v1::Goal& goal) {
+  return v1::Goal::descriptor()->FindFieldByNumber(goal.kind_case());
 }
 
-const char* KindOf(const v1::Goal& goal) {
-  switch (goal.kind_case()) {
-    case v1::Goal::kRotation:
-      return "rotation";
-    case v1::Goal::kPose:
-      return "pose";
-    default:
-      return "position";
-  }
+std::string KindOf(const v1::Goal& goal) {
+  const auto* field = KindFieldOf(goal);
+  return field == nullptr ? "" : field->name();
+}
+
+// What the goal is about; goals of the whole body go by their own id.
+std::string EffectorOf(const v1::Goal& goal) {
+  const auto* field = KindFieldOf(goal);
+  if (field == nullptr) return goal.goal_id();
+  const google::protobuf::Message& kind =
+      goal.GetReflection()->GetMessage(goal, field);
+  const auto* effector =
+      kind.GetDescriptor()->FindFieldByName("end_effector_id");
+  if (effector == nullptr) return goal.goal_id();
+  return kind.GetReflection()->GetString(kind, effector);
 }
 
 std::vector<std::string> LimitedJoints(const Skeleton& skeleton,
@@ -100,9 +103,9 @@ std::string GoalsText(const v1::SolveInverseKinematicsRequest& request,
         Significant(1e3 * ErrorAt(report.position_errors_m(), i), 3);
     const std::string rotation =
         Significant(1e3 * ErrorAt(report.rotation_errors_rad(), i), 3);
-    table.AddRow({EffectorOf(goal), KindOf(goal),
-                  goal.has_rotation() ? "-" : position,
-                  goal.has_position() ? "-" : rotation});
+    table.AddRow(
+        {EffectorOf(goal), KindOf(goal), goal.has_rotation() ? "-" : position,
+         goal.has_position() || goal.has_center_of_mass() ? "-" : rotation});
   }
   return table.ToString();
 }

@@ -11,6 +11,7 @@
 #include "client/cli/motion/clip_writer.h"
 #include "client/cli/motion/quality_text.h"
 #include "client/cli/text/table.h"
+#include "gelenk/motion/clip_frames.h"
 #include "gelenk/retarget/retarget_clip.h"
 
 namespace gelenk::cli {
@@ -78,8 +79,12 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
   const absl::StatusOr<Eigen::MatrixXd> positions =
       Retarget(*source, *target, options.live);
   if (!positions.ok()) return positions.status();
-  if (absl::Status status = WriteClip(*target, *positions, source->frame_time_s,
-                                      options.out_path);
+  const absl::StatusOr<MotionClip> clip = ClipFromFrames(
+      target->model->skeleton, *positions,
+      {.name = source->name, .frame_time_s = source->frame_time_s});
+  if (!clip.ok()) return clip.status();
+  if (absl::Status status = WriteClip(
+          *clip, target->clip ? &*target->clip : nullptr, options.out_path);
       !status.ok()) {
     return status;
   }

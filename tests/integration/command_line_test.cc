@@ -226,6 +226,10 @@ TEST_P(ServedCommandTest, AnyGoalAsJson) {
   const json solved = RunJson({"ik", "chain.json", "--request", "request.json",
                                "--picture", "pose.svg"});
   EXPECT_EQ(solved["outcome"], "converged") << solved;
+  EXPECT_EQ(solved["goals"][0]["kind"], "position");
+  EXPECT_EQ(solved["goals"][0]["end_effector"], "tip");
+  EXPECT_EQ(solved["goals"][1]["kind"], "posture");
+  EXPECT_EQ(solved["goals"][1]["end_effector"], "rest");
   EXPECT_THAT(Read(folder_ / "pose.svg"), HasSubstr("</svg>"));
   Write("bad.json", R"({"goals": [{"x": 1}]})");
   const Ending bad = Run({"ik", "chain.json", "--request", "bad.json"});
@@ -396,6 +400,9 @@ TEST_F(CommandLineTest, ClipsAreSmoothedMirroredAndConverted) {
   EXPECT_EQ(Run({"clip", "convert", "walk.bvh", "--out", "b.glb"}).exit_code,
             0);
   EXPECT_THAT(Read(folder_ / "b.glb"), StartsWith("glTF"));
+  const Ending model = Run({"clip", "mirror", "b.glb", "--out", "c.bvh"});
+  EXPECT_EQ(model.exit_code, 1);
+  EXPECT_THAT(model.err, HasSubstr("want a .bvh file"));
   const Ending bad = Run({"clip", "convert", "walk.bvh", "--out", "b.fbx"});
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_THAT(bad.err, HasSubstr(".glb"));
