@@ -14,7 +14,6 @@
 //
 //   stream_benchmark [FIRST LAST]     only these lines of the table, from 0
 #include <grpcpp/grpcpp.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -22,7 +21,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <string>
@@ -30,14 +28,11 @@
 #include <vector>
 
 #include "convert/geometry.h"
-#include "convert/goal.h"
-#include "convert/pose.h"
-#include "convert/skeleton.h"
-#include "gelenk/v1/kinematics_service.grpc.pb.h"
 #include "gelenk/v1/session_service.grpc.pb.h"
 #include "stream/echo.grpc.pb.h"
 #include "tests/benchmarks/problems.h"
 #include "tests/benchmarks/stream/child_process.h"
+#include "tests/benchmarks/stream/gelenkd_process.h"
 
 namespace gelenk::benchmarks {
 namespace {
@@ -267,51 +262,12 @@ class FrameSource {
   int64_t number_ = 0;
 };
 
-void Check(const grpc::Status& status) {
-  if (status.ok()) return;
-  std::fprintf(stderr, "%s\n", status.error_message().c_str());
-  std::exit(1);
-}
-
-void CreateSessions(const StreamProblem& problem, Load& load) {
-  auto kinematics = v1::KinematicsService::NewStub(load.channels[0]);
-  auto sessions = v1::SessionService::NewStub(load.channels[0]);
-  {
-    grpc::ClientContext context;
-    v1::CreateSkeletonRequest request;
-    request.set_skeleton_id("benchmark");
-    convert::ToProto(*problem.skeleton, request.mutable_skeleton());
-    v1::Skeleton skeleton;
-    Check(kinematics->CreateSkeleton(&context, request, &skeleton));
-  }
-  for (int i = 0; i < kStreams; ++i) {
-    grpc::ClientContext context;
-    v1::CreateSessionRequest request;
-    request.set_session_id("benchmark-" + std::to_string(i));
-    v1::Session* session = request.mutable_session();
-    session->set_skeleton("skeletons/benchmark");
-    convert::ToProto(problem.goals, session->mutable_goals());
-    convert::ToProto(problem.start, session->mutable_pose());
-    session->mutable_solver_options()->set_position_tolerance_m(1e-3);
-    session->mutable_solver_options()->set_rotation_tolerance_rad(1e-2);
-    v1::Session created;
-    Check(sessions->CreateSession(&context, request, &created));
-  }
-}
-
 Figures MeasureServer(const Setting& setting, const StreamProblem& problem,
                       size_t* request_bytes, size_t* answer_bytes) {
-  const std::string port_file =
-      "/tmp/gelenk-benchmark-" + std::to_string(getpid());
-  std::remove(port_file.c_str());
-  ChildProcess server({GELENKD, "--listen=127.0.0.1:0",
-                       "--port-file=" + port_file, "--log-level=error",
-                       "--io-threads=" + std::to_string(setting.threads)});
-  std::string port;
-  while (!(std::ifstream(port_file) >> port)) usleep(10000);
-  std::remove(port_file.c_str());
-  auto load = std::make_unique<Load>("127.0.0.1:" + port);
-  CreateSessions(problem, *load);
+  GelenkdProcess server({"--io-threads=" + std::to_string(setting.threads)});
+  auto load = std::make_unique<Load>(server.address());
+  CreateSkeleton(problem, load->channels[0]);
+  CreateSessions(problem, 0, kStreams, load->channels[0]);
   std::vector<double> solves;
   for (int i = 0; i < kStreams; ++i) {
     std::shared_ptr<v1::SessionService::Stub> stub =
@@ -350,7 +306,7 @@ Figures MeasureServer(const Setting& setting, const StreamProblem& problem,
               }
             }));
   }
-  Figures figures = Measure(server, *load, setting);
+  Figures figures = Measure(server.process(), *load, setting);
   figures.solve_us = MeanWithoutSlowest(solves);
   Abandon(std::move(load));
   return figures;
