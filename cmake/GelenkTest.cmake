@@ -7,7 +7,8 @@
 #
 # Labels in use: unit, integration, architecture, concurrent (also run under
 # ThreadSanitizer), soak (only with `./dev soak`), corpus (on files that are not
-# part of the project; skipped where they are not found).
+# part of the project; skipped where they are not found). The target LABEL_tests
+# builds the tests of one label and what they need.
 find_package(GTest CONFIG REQUIRED)
 
 function(gelenk_test name)
@@ -30,6 +31,18 @@ function(gelenk_test name)
   target_compile_definitions(${name} PRIVATE ${arg_DEFINES})
   gelenk_warnings(${name})
   add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}"
-                                          TIMEOUT ${arg_TIMEOUT})
+  gelenk_label_test(${name} ${name} "${arg_LABELS}" ${arg_TIMEOUT})
+endfunction()
+
+# gelenk_label_test(<test> <target> <labels> <seconds>): labels and time limit of
+# a test that runs the executable <target>.
+function(gelenk_label_test test target labels timeout)
+  set_tests_properties(${test} PROPERTIES LABELS "${labels}"
+                                          TIMEOUT ${timeout})
+  foreach(label IN LISTS labels)
+    if(NOT TARGET ${label}_tests)
+      add_custom_target(${label}_tests)
+    endif()
+    add_dependencies(${label}_tests ${target})
+  endforeach()
 endfunction()

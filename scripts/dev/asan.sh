@@ -4,6 +4,6 @@
 service=ON
 [ "${1:-}" = core ] && service=OFF
 configure asan -DGELENK_BUILD_SERVICE=$service -DGELENK_BUILD_BENCHMARKS=OFF
-build asan
+build asan unit_tests
 say "testing, label unit"
 ctest --preset asan -j 2 -L '^unit$' --no-tests=error
