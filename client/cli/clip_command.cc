@@ -52,6 +52,12 @@ absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
   return absl::OkStatus();
 }
 
+std::string FramesLeftOutText(int count) {
+  if (count == 1) return "frame 0 is no part of the motion and left out";
+  return absl::StrCat("frames 0 to ", count - 1,
+                      " are no part of the motion and left out");
+}
+
 // What smooth, mirror and convert make of a clip.
 absl::StatusOr<MotionClip> Processed(const ClipOptions& options,
                                      const MotionClip& clip) {
@@ -75,14 +81,17 @@ absl::Status RunProcess(const ClipOptions& options, std::string* output) {
       ClipFromBvh(file->document, file->import, BaseName(options.path));
   if (!clip.ok()) return InFile(options.path, clip.status());
   absl::StatusOr<MotionClip> motion = clip;
-  if (options.smooth->parsed() &&
-      FindFirstFrameJump(*file->import.skeleton, file->poses)) {
-    // A first frame that is no part of the motion would be smeared over it.
-    absl::StrAppend(output, "frame 0 is no part of the motion and left out\n");
-    motion = ClipFromFrames(clip->skeleton(),
-                            file->poses.rightCols(file->frame_count() - 1),
-                            clip->properties());
-    if (!motion.ok()) return InFile(options.path, motion.status());
+  if (options.smooth->parsed()) {
+    // What is no part of the motion would be smeared over it.
+    const int before =
+        CountFramesBeforeMotion(*file->import.skeleton, file->poses);
+    if (before > 0) {
+      absl::StrAppend(output, FramesLeftOutText(before), "\n");
+      motion = ClipFromFrames(
+          clip->skeleton(), file->poses.rightCols(file->frame_count() - before),
+          clip->properties());
+      if (!motion.ok()) return InFile(options.path, motion.status());
+    }
   }
   const absl::StatusOr<MotionClip> processed = Processed(options, *motion);
   if (!processed.ok()) return InFile(options.path, processed.status());

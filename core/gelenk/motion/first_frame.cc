@@ -77,4 +77,16 @@ std::optional<FirstFrameJump> FindFirstFrameJump(
   return FirstFrameJump{first.joint, first.angle_rad, typical};
 }
 
+int CountFramesBeforeMotion(
+    const Skeleton& skeleton,
+    const Eigen::Ref<const Eigen::MatrixXd>& positions) {
+  int count = 0;
+  while (count < kMaxWayFrames &&
+         FindFirstFrameJump(skeleton,
+                            positions.rightCols(positions.cols() - count))) {
+    ++count;
+  }
+  return count;
+}
+
 }  // namespace gelenk

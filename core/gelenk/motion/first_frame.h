@@ -33,6 +33,16 @@ std::optional<FirstFrameJump> FindFirstFrameJump(
     const Skeleton& skeleton,
     const Eigen::Ref<const Eigen::MatrixXd>& positions);
 
+// How many frames at the start are none of the motion: 0, or frame 0 and the
+// frames of the way out of it, each of which jumps in the same sense. A
+// conversion that changed the rate or smoothed the clip made a jump of one
+// frame one of several; what filters a clip should leave all of them out, or it
+// smears them over the first frames of the motion. At most kMaxWayFrames and
+// all but two of the frames. Cost: linear.
+inline constexpr int kMaxWayFrames = 8;
+int CountFramesBeforeMotion(const Skeleton& skeleton,
+                            const Eigen::Ref<const Eigen::MatrixXd>& positions);
+
 }  // namespace gelenk
 
 #endif  // GELENK_MOTION_FIRST_FRAME_H_

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "gelenk/motion/clip_frames.h"
+#include "gelenk/motion/pose_part.h"
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
@@ -29,21 +31,41 @@ Coefficients Butterworth(double cutoff_of_rate) {
           (1 - std::numbers::sqrt2 * k + k * k) * scale};
 }
 
+// Adds whole turns to the rotations of `change`, as many as bring each next to
+// `course`: a filter that lags behind a fast turn is on its own side of it,
+// also by more than half a turn.
+void Unwind(const std::vector<PosePart>& parts, const Eigen::VectorXd& course,
+            Eigen::VectorXd& change) {
+  for (const PosePart& part : parts) {
+    if (part.kind != PosePartKind::kRotation) continue;
+    auto turn = change.segment<3>(part.velocity_offset);
+    const double angle = turn.norm();
+    if (angle == 0) continue;
+    const double along =
+        course.segment<3>(part.velocity_offset).dot(turn) / angle;
+    const double turns = std::round((along - angle) / (2 * std::numbers::pi));
+    turn *= 1 + turns * 2 * std::numbers::pi / angle;
+  }
+}
+
 // In place, from the first column to the last.
 void Filter(const Skeleton& skeleton, const Coefficients& c,
             Eigen::MatrixXd& frames) {
+  const std::vector<PosePart> parts = PosePartsOf(skeleton);
   Eigen::VectorXd x1 = frames.col(0), x2 = x1, y1 = x1, y2 = x1, x;
-  Eigen::VectorXd step(skeleton.velocity_count()), change = step;
+  // From y1 to x1, x2, x and y2; the last one to x is the course of the next.
+  Eigen::VectorXd to_x = Eigen::VectorXd::Zero(skeleton.velocity_count());
+  Eigen::VectorXd to_x1 = to_x, to_x2 = to_x, to_y2 = to_x, step = to_x;
   for (Eigen::Index i = 0; i < frames.cols(); ++i) {
     x = frames.col(i);
-    Difference(skeleton, y1, x, step);
-    step *= c.b0;
-    Difference(skeleton, y1, x1, change);
-    step += c.b1 * change;
-    Difference(skeleton, y1, x2, change);
-    step += c.b2 * change;
-    Difference(skeleton, y1, y2, change);
-    step -= c.a2 * change;
+    Difference(skeleton, y1, x1, to_x1);
+    Unwind(parts, to_x, to_x1);
+    Difference(skeleton, y1, x2, to_x2);
+    Unwind(parts, to_x1, to_x2);
+    Difference(skeleton, y1, x, to_x);
+    Unwind(parts, to_x1, to_x);
+    Difference(skeleton, y1, y2, to_y2);
+    step = c.b0 * to_x + c.b1 * to_x1 + c.b2 * to_x2 - c.a2 * to_y2;
     y2 = y1;
     Integrate(skeleton, y2, step, y1);
     x2 = x1;

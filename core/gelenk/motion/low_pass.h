@@ -11,10 +11,14 @@
 // Euler angle is ever formed, and turning the whole motion turns the result.
 // At the ends the motion is continued by its reflection through the end pose.
 //
-// Limit: between a pose and the filter's delayed one, about 0.4 / cutoff
-// seconds apart on the way forward, no joint may turn by half a turn or more.
-// Source: Winter, "Biomechanics and Motor Control of Human Movement", ch. 3
-// (the cutoff of the two passes together).
+// With a cutoff below a tenth of the rate nothing turns more than 1.17 times as
+// fast as the fastest turn before (the sum of the magnitudes of the impulse
+// response), at the ends neither.
+//
+// Limit: from one frame to the next no joint may turn by half a turn or more.
+// How far the filter lags behind the motion does not matter: whole turns
+// between the two are kept count of. Source: Winter, "Biomechanics and Motor
+// Control of Human Movement", ch. 3 (the cutoff of the two passes together).
 #ifndef GELENK_MOTION_LOW_PASS_H_
 #define GELENK_MOTION_LOW_PASS_H_
 

@@ -67,5 +67,29 @@ TEST(FirstFrameTest, AWholeTurnOfAHingeIsNoJump) {
   EXPECT_FALSE(FindFirstFrameJump(*BallAndHinge(), clip));
 }
 
+// The jump as a filter or a change of rate leaves it: on several frames.
+TEST(FirstFrameTest, CountsTheWayOutOfTheRestPose) {
+  const auto skeleton = BallAndHinge();
+  Eigen::MatrixXd clip = Clip(120 * kDegree, kDegree, 30);
+  EXPECT_EQ(CountFramesBeforeMotion(*skeleton, clip), 1);
+  const double way_deg[] = {0, 50, 92, 114};
+  for (int frame = 0; frame < 4; ++frame) {
+    StoreXyzw(ExpRotation({0, 0, way_deg[frame] * kDegree}),
+              clip.col(frame).data());
+  }
+  EXPECT_EQ(CountFramesBeforeMotion(*skeleton, clip), 3);
+  EXPECT_EQ(CountFramesBeforeMotion(*skeleton, Clip(0, kDegree, 30)), 0);
+  EXPECT_EQ(CountFramesBeforeMotion(*skeleton, clip.leftCols(2)), 0);
+}
+
+TEST(FirstFrameTest, TheWayOutOfTheRestPoseIsShort) {
+  Eigen::MatrixXd clip = Clip(0, 0, 60);
+  for (int frame = 0; frame < 20; ++frame) {
+    // Faster ever, so that every frame jumps beside the still ones after it.
+    clip(kHingeRow, frame) = -(20.0 - frame) * 20 * kDegree;
+  }
+  EXPECT_LE(CountFramesBeforeMotion(*BallAndHinge(), clip), kMaxWayFrames);
+}
+
 }  // namespace
 }  // namespace gelenk

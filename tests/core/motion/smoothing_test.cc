@@ -129,6 +129,66 @@ TEST(LowPassTest, RotationsAboutOneAxisAreNumbers) {
   }
 }
 
+// A turn so fast that the filter is more than half a turn behind it, at either
+// end of a clip and in its middle: still the filter of the books.
+TEST(LowPassTest, FastTurnsKeepTheirWayRound) {
+  constexpr int kCount = 80;
+  for (double turn_deg : {60, 107, 140, 175}) {
+    for (int frames_of_turn : {1, 2, 4, 8}) {
+      for (int start : {0, 40, kCount - 1 - frames_of_turn}) {
+        std::vector<double> angles(kCount);
+        for (int i = 0; i < kCount; ++i) {
+          angles[i] = turn_deg * kPi / 180 *
+                      std::clamp((i - start) / (1.0 * frames_of_turn), 0., 1.);
+        }
+        const Eigen::MatrixXd numbers =
+            LowPass(*OneJoint(JointType::kRevolute),
+                    Eigen::Map<const Eigen::RowVectorXd>(angles.data(), kCount),
+                    kFrame_s, 5)
+                .value();
+        const Eigen::MatrixXd rotations =
+            LowPass(*OneJoint(JointType::kSpherical), Turning(angles), kFrame_s,
+                    5)
+                .value();
+        for (int i = 0; i < kCount; ++i) {
+          EXPECT_LT(AngleBetween(QuaternionXyzw(rotations.col(i).data()),
+                                 ExpRotation({0, numbers(0, i), 0})),
+                    1e-6)
+              << turn_deg << " in " << frames_of_turn << " at " << start;
+        }
+      }
+    }
+  }
+}
+
+// By the sum of the magnitudes of its impulse response the filter cannot turn
+// much faster than what goes in; the ends of a clip are no exception.
+TEST(LowPassTest, TurnsNoFasterThanTheMotion) {
+  Random random(6);
+  for (int trial = 0; trial < 50; ++trial) {
+    Eigen::MatrixXd frames(4, 60);
+    Eigen::Quaterniond q = RandomRotation(random);
+    const double size = trial % 2 == 0 ? 0.5 : 1.5;
+    Eigen::Vector3d velocity = RandomVector(random, size);
+    double fastest = 0;
+    for (int i = 0; i < 60; ++i) {
+      frames.col(i) = q.coeffs();
+      velocity = 0.7 * velocity + 0.3 * RandomVector(random, size);
+      const Eigen::Quaterniond next = (q * ExpRotation(velocity)).normalized();
+      if (i < 59) fastest = std::max(fastest, AngleBetween(q, next));
+      q = next;
+    }
+    const Eigen::MatrixXd smooth =
+        LowPass(*OneJoint(JointType::kSpherical), frames, kFrame_s, 9).value();
+    for (int i = 1; i < 60; ++i) {
+      EXPECT_LT(AngleBetween(QuaternionXyzw(smooth.col(i - 1).data()),
+                             QuaternionXyzw(smooth.col(i).data())),
+                1.17 * fastest)
+          << trial << " at " << i;
+    }
+  }
+}
+
 // No axis and no frame is special, from either side.
 TEST(LowPassTest, TurningTheMotionTurnsTheResult) {
   Random random(3);
