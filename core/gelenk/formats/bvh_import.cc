@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "gelenk/formats/bvh_body.h"
+#include "gelenk/formats/file_unit.h"
 #include "gelenk/formats/unique_names.h"
 #include "gelenk/skeleton/joint_check.h"
 #include "gelenk/skeleton/skeleton_builder.h"
@@ -18,10 +19,6 @@ namespace {
 // Positions that move less than this, relative to the skeleton's size, are an
 // exporter's rounding.
 constexpr double kConstant = 1e-6;
-
-// A nanometre to a thousand kilometres.
-constexpr double kMinUnit = 1e-9;
-constexpr double kMaxUnit = 1e6;
 
 struct ChannelRow {
   int row;
@@ -302,12 +299,6 @@ void BvhSkeletonBuilder::AddEndSites() {
   }
 }
 
-absl::Status CheckUnit(double unit_m) {
-  if (unit_m >= kMinUnit && unit_m <= kMaxUnit) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrFormat(
-      "unit_m: want %g to %g, got %g", kMinUnit, kMaxUnit, unit_m));
-}
-
 }  // namespace
 
 absl::StatusOr<BvhImport> ImportBvh(const BvhDocument& document,
@@ -316,7 +307,7 @@ absl::StatusOr<BvhImport> ImportBvh(const BvhDocument& document,
     return absl::InvalidArgumentError("joints: want at least one");
   }
   if (options.unit_m) {
-    if (absl::Status status = CheckUnit(*options.unit_m); !status.ok()) {
+    if (absl::Status status = CheckFileUnit(*options.unit_m); !status.ok()) {
       return status;
     }
   }

@@ -79,7 +79,27 @@ size_t ReadIndex(int type, const char* bytes) {
 }
 
 const char* TypeOfRows(int rows) {
-  return rows == 1 ? "SCALAR" : rows == 3 ? "VEC3" : "VEC4";
+  return rows == 1   ? "SCALAR"
+         : rows == 3 ? "VEC3"
+         : rows == 4 ? "VEC4"
+                     : "MAT4";
+}
+
+// What keeps `type` from being read as `numbers`; empty for nothing.
+std::string FaultOfType(size_t type, bool is_normalized, GltfNumbers numbers) {
+  if (numbers == GltfNumbers::kWhole) {
+    if (!is_normalized && (type == 5121 || type == 5123 || type == 5125)) {
+      return "";
+    }
+    return absl::StrFormat("want 5121, 5123 or 5125, not normalized, got %d",
+                           type);
+  }
+  if (type == 5126 || (is_normalized && type < 5125 &&
+                       ComponentBytes(static_cast<int>(type)) > 0)) {
+    return "";
+  }
+  return absl::StrFormat(
+      "want 5126, or normalized integers of one or two bytes, got %d", type);
 }
 
 }  // namespace
@@ -209,8 +229,11 @@ absl::Status GltfAccessors::ReadDense(const Layout& layout,
   const size_t size = ComponentBytes(layout.component_type);
   for (size_t i = 0; i < layout.count; ++i) {
     for (int row = 0; row < layout.rows; ++row) {
-      values(row, static_cast<Eigen::Index>(i)) = ReadComponent(
-          layout.component_type, bytes->data() + i * stride + row * size);
+      const char* at = bytes->data() + i * stride + row * size;
+      values(row, static_cast<Eigen::Index>(i)) =
+          layout.numbers == GltfNumbers::kWhole
+              ? static_cast<double>(ReadIndex(layout.component_type, at))
+              : ReadComponent(layout.component_type, at);
     }
   }
   return absl::OkStatus();
@@ -279,7 +302,16 @@ absl::Status GltfAccessors::ReadSparse(const json& sparse, const Layout& layout,
   return absl::OkStatus();
 }
 
-absl::StatusOr<Eigen::MatrixXd> GltfAccessors::Read(size_t accessor, int rows) {
+absl::StatusOr<size_t> GltfAccessors::Count(size_t accessor) const {
+  const absl::StatusOr<const json*> object =
+      ObjectAt(root_, "accessors", accessor);
+  if (!object.ok()) return object.status();
+  return ReadWhole(**object, "count", absl::StrCat("accessors[", accessor, "]"),
+                   std::nullopt);
+}
+
+absl::StatusOr<Eigen::MatrixXd> GltfAccessors::Read(size_t accessor, int rows,
+                                                    GltfNumbers numbers) {
   const absl::StatusOr<const json*> object =
       ObjectAt(root_, "accessors", accessor);
   if (!object.ok()) return object.status();
@@ -300,14 +332,9 @@ absl::StatusOr<Eigen::MatrixXd> GltfAccessors::Read(size_t accessor, int rows) {
                  absl::StrCat("want ", TypeOfRows(rows)));
   }
   const auto normalized = (*object)->find("normalized");
-  layout.normalized = normalized != (*object)->end() && *normalized == true;
-  if (*type != 5126 &&
-      !(layout.normalized && *type < 5125 && ComponentBytes(*type) > 0)) {
-    return Fault(layout.path + ".componentType",
-                 absl::StrFormat("want 5126, or normalized integers of one or "
-                                 "two bytes, got %d",
-                                 *type));
-  }
+  const std::string fault = FaultOfType(
+      *type, normalized != (*object)->end() && *normalized == true, numbers);
+  if (!fault.empty()) return Fault(layout.path + ".componentType", fault);
   if (*count < 1 || *count > numbers_left_ / rows) {
     return Fault(
         layout.path + ".count",
@@ -316,6 +343,7 @@ absl::StatusOr<Eigen::MatrixXd> GltfAccessors::Read(size_t accessor, int rows) {
   numbers_left_ -= *count * rows;
   layout.count = *count;
   layout.component_type = static_cast<int>(*type);
+  layout.numbers = numbers;
   layout.offset = *offset;
   layout.view = *view;
   Eigen::MatrixXd values =

@@ -15,6 +15,13 @@
 
 namespace gelenk {
 
+enum class GltfNumbers {
+  // Floats, or integers that the accessor calls normalized: fractions.
+  kReal,
+  // Unsigned integers as they are: indices.
+  kWhole,
+};
+
 // Reads accessors; opens each buffer once, when it is first wanted.
 class GltfAccessors {
  public:
@@ -24,9 +31,14 @@ class GltfAccessors {
   GltfAccessors(const nlohmann::json& root, absl::string_view binary,
                 const OpenUri& open_uri, size_t max_numbers);
 
-  // One column an element of `rows` numbers. Integers are taken where the
-  // accessor says normalized. Errors: INVALID_ARGUMENT with the path.
-  absl::StatusOr<Eigen::MatrixXd> Read(size_t accessor, int rows);
+  // How many elements the accessor says that it has. Errors: INVALID_ARGUMENT
+  // with the path, as below.
+  absl::StatusOr<size_t> Count(size_t accessor) const;
+
+  // One column an element of `rows` numbers: 1, 3, 4, or 16 of a matrix, column
+  // by column.
+  absl::StatusOr<Eigen::MatrixXd> Read(
+      size_t accessor, int rows, GltfNumbers numbers = GltfNumbers::kReal);
 
  private:
   // Elements of `row_count` numbers of a component type, in a buffer view.
@@ -36,7 +48,7 @@ class GltfAccessors {
     size_t count = 0;
     int rows = 0;
     int component_type = 0;
-    bool normalized = false;
+    GltfNumbers numbers = GltfNumbers::kReal;
     std::string path;
   };
 

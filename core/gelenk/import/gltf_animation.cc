@@ -7,9 +7,9 @@
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
 #include "gelenk/base/violations.h"
-#include "gelenk/import/bounded_json.h"
 #include "gelenk/import/glb_container.h"
 #include "gelenk/import/gltf_accessor.h"
+#include "gelenk/import/gltf_json.h"
 #include "gelenk/skeleton/joint_check.h"
 
 namespace gelenk {
@@ -25,13 +25,6 @@ constexpr absl::string_view kKeptBelow[] = {
     "interpolation", "name",          "node",       "normalized", "output",
     "path",          "sampler",       "samplers",   "sparse",     "target",
     "type",          "uri",           "values"};
-
-bool IsKept(int depth, absl::string_view key) {
-  const absl::Span<const absl::string_view> kept =
-      depth == 1 ? absl::MakeConstSpan(kKeptAtTop)
-                 : absl::MakeConstSpan(kKeptBelow);
-  return std::find(kept.begin(), kept.end(), key) != kept.end();
-}
 
 absl::Status Fault(absl::string_view path, absl::string_view reason) {
   return absl::InvalidArgumentError(absl::StrCat(path, ": ", reason));
@@ -175,20 +168,9 @@ absl::Status ReadChannel(const json& animation, const json& channel_json,
 absl::StatusOr<std::vector<GltfAnimation>> ReadGltfAnimations(
     absl::string_view bytes, const GltfDocument& document,
     const OpenUri& open_uri, const GltfBounds& bounds) {
-  if (bytes.size() > bounds.max_bytes) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "want at most %d bytes, got %d", bounds.max_bytes, bytes.size()));
-  }
-  const absl::StatusOr<absl::string_view> text = JsonOfGltf(bytes);
-  if (!text.ok()) return text.status();
-  const absl::StatusOr<json> root = ParseJson(
-      *text,
-      {bounds.max_json_bytes, bounds.max_json_depth, bounds.max_json_values},
-      IsKept);
+  const absl::StatusOr<json> root =
+      ParseGltfJson(bytes, bounds, {kKeptAtTop, kKeptBelow});
   if (!root.ok()) return root.status();
-  if (!root->is_object()) {
-    return absl::InvalidArgumentError("want a JSON object: this is no glTF");
-  }
   std::vector<GltfAnimation> animations;
   const auto list = root->find("animations");
   if (list == root->end()) return animations;

@@ -7,17 +7,15 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/formats/file_unit.h"
 #include "gelenk/formats/unique_names.h"
 #include "gelenk/import/gltf_joints.h"
+#include "gelenk/import/gltf_placement.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/skeleton/joint_check.h"
 
 namespace gelenk {
 namespace {
-
-// A nanometre to a thousand kilometres.
-constexpr double kMinUnit = 1e-9;
-constexpr double kMaxUnit = 1e6;
 
 // Products of single precision numbers may be so far from 1.
 constexpr double kScaleTolerance = 1e-4;
@@ -40,37 +38,6 @@ bool IsOne(const Eigen::Vector3d& scale) {
   return (scale.array() - 1).abs().maxCoeff() <= kScaleTolerance;
 }
 
-// A node in the scene while everything rests, lengths in the file's unit.
-struct Placement {
-  // Where its own coordinates come out, scale and all.
-  Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  // Without the scale.
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
-};
-
-std::vector<Placement> PlaceNodes(const GltfDocument& document) {
-  std::vector<Placement> placements(document.nodes.size());
-  std::vector<int> waiting;
-  for (size_t i = 0; i < document.nodes.size(); ++i) {
-    if (document.nodes[i].parent < 0) waiting.push_back(static_cast<int>(i));
-  }
-  const Placement world;
-  while (!waiting.empty()) {
-    const int index = waiting.back();
-    waiting.pop_back();
-    const GltfNode& node = document.nodes[index];
-    const Placement& parent = node.parent < 0 ? world : placements[node.parent];
-    Placement& placement = placements[index];
-    placement.position = parent.linear * node.translation + parent.position;
-    placement.rotation = (parent.rotation * node.rotation).normalized();
-    placement.linear = parent.linear * node.rotation.toRotationMatrix() *
-                       node.scale.asDiagonal();
-    waiting.insert(waiting.end(), node.children.begin(), node.children.end());
-  }
-  return placements;
-}
-
 class GltfSkeletonBuilder {
  public:
   GltfSkeletonBuilder(const GltfDocument& document, const GltfJoints& joints,
@@ -78,7 +45,7 @@ class GltfSkeletonBuilder {
       : document_(document),
         joints_(joints),
         options_(options),
-        placements_(PlaceNodes(document)),
+        placements_(PlaceGltfNodes(document)),
         ids_(kMaxIdBytes) {
     import_.warnings = joints.warnings;
     import_.unit_m = options.unit_m;
@@ -104,7 +71,7 @@ class GltfSkeletonBuilder {
   const GltfDocument& document_;
   const GltfJoints& joints_;
   const GltfImportOptions& options_;
-  const std::vector<Placement> placements_;
+  const std::vector<GltfPlacement> placements_;
   UniqueNames ids_;
   // Of `joints_.nodes`.
   std::vector<std::string> joint_ids_;
@@ -233,7 +200,7 @@ void GltfSkeletonBuilder::AddCommonRoot() {
 }
 
 RigidTransform GltfSkeletonBuilder::WorldFrom(int node) const {
-  const Placement& placement = placements_[node];
+  const GltfPlacement& placement = placements_[node];
   return {placement.rotation, options_.unit_m * placement.position};
 }
 
@@ -302,9 +269,8 @@ void GltfSkeletonBuilder::WarnOfSize() {
 
 absl::StatusOr<GltfImport> ImportGltf(const GltfDocument& document,
                                       const GltfImportOptions& options) {
-  if (!(options.unit_m >= kMinUnit && options.unit_m <= kMaxUnit)) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "unit_m: want %g to %g, got %g", kMinUnit, kMaxUnit, options.unit_m));
+  if (absl::Status status = CheckFileUnit(options.unit_m); !status.ok()) {
+    return status;
   }
   const absl::StatusOr<GltfJoints> joints =
       FindGltfJoints(document, options.skin);

@@ -12,8 +12,7 @@
 #include "absl/types/span.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/formats/unique_names.h"
-#include "gelenk/import/bounded_json.h"
-#include "gelenk/import/glb_container.h"
+#include "gelenk/import/gltf_json.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/skeleton/joint_check.h"
 
@@ -35,13 +34,6 @@ constexpr absl::string_view kKeptBelow[] = {
     "channels",    "children", "joints", "matrix",   "name",
     "node",        "nodes",    "path",   "rotation", "scale",
     "translation", "target",   "skin",   "version"};
-
-bool IsKept(int depth, absl::string_view key) {
-  const absl::Span<const absl::string_view> kept =
-      depth == 1 ? absl::MakeConstSpan(kKeptAtTop)
-                 : absl::MakeConstSpan(kKeptBelow);
-  return std::find(kept.begin(), kept.end(), key) != kept.end();
-}
 
 // A member of an object, and its path for messages.
 struct Member {
@@ -349,9 +341,6 @@ void GltfParser::CheckSceneRoots() {
 }
 
 absl::StatusOr<GltfDocument> GltfParser::Parse(const GltfBounds& bounds) {
-  if (!root_.value->is_object()) {
-    return absl::InvalidArgumentError("want a JSON object: this is no glTF");
-  }
   ReadVersion();
   const Member nodes = Find(root_, "nodes");
   const size_t node_count = CountElements(nodes);
@@ -381,16 +370,8 @@ absl::StatusOr<GltfDocument> GltfParser::Parse(const GltfBounds& bounds) {
 
 absl::StatusOr<GltfDocument> ReadGltf(absl::string_view bytes,
                                       const GltfBounds& bounds) {
-  if (bytes.size() > bounds.max_bytes) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "want at most %d bytes, got %d", bounds.max_bytes, bytes.size()));
-  }
-  const absl::StatusOr<absl::string_view> text = JsonOfGltf(bytes);
-  if (!text.ok()) return text.status();
-  const absl::StatusOr<json> root = ParseJson(
-      *text,
-      {bounds.max_json_bytes, bounds.max_json_depth, bounds.max_json_values},
-      IsKept);
+  const absl::StatusOr<json> root =
+      ParseGltfJson(bytes, bounds, {kKeptAtTop, kKeptBelow});
   if (!root.ok()) return root.status();
   return GltfParser(*root).Parse(bounds);
 }

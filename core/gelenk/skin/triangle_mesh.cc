@@ -85,6 +85,18 @@ std::vector<Vector3d> VertexNormals(const TriangleMesh& mesh) {
   return normals;
 }
 
+void FillMissingNormals(TriangleMesh& mesh) {
+  const auto is_missing = [](const Vector3d& n) { return n.isZero(0); };
+  if (std::none_of(mesh.normals.begin(), mesh.normals.end(), is_missing)) {
+    return;
+  }
+  const std::vector<Vector3d> means =
+      VertexNormals({mesh.positions, mesh.triangles, {}});
+  for (size_t i = 0; i < means.size(); ++i) {
+    if (is_missing(mesh.normals[i])) mesh.normals[i] = means[i];
+  }
+}
+
 double EnclosedVolume(absl::Span<const Vector3d> positions,
                       absl::Span<const Triangle> triangles) {
   double six_volumes = 0;

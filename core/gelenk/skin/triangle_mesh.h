@@ -42,6 +42,10 @@ absl::Status CheckMesh(const TriangleMesh& mesh, const MeshBounds& bounds = {});
 // none to tell.
 std::vector<Eigen::Vector3d> VertexNormals(const TriangleMesh& mesh);
 
+// Normals that are zero become such means; of a mesh with a normal a vertex.
+// Exporters write zeros where they know none.
+void FillMissingNormals(TriangleMesh& mesh);
+
 // The volume inside a closed mesh, m^3; negative when it is inside out.
 double EnclosedVolume(absl::Span<const Eigen::Vector3d> positions,
                       absl::Span<const Triangle> triangles);

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "gelenk/base/violations.h"
@@ -91,6 +90,45 @@ WeightedSkin::Affine AffineOf(const RigidTransform& transform) {
   return matrix;
 }
 
+// transform * matrix
+WeightedSkin::Affine Moved(const RigidTransform& transform,
+                           const WeightedSkin::Affine& matrix) {
+  WeightedSkin::Affine moved = transform.rotation.toRotationMatrix() * matrix;
+  moved.col(3) += transform.translation;
+  return moved;
+}
+
+// Normals go with the cofactors, the inverse transpose but for scale; it is
+// there also where the matrix is flat.
+template <typename Number>
+Eigen::Matrix<Number, 3, 1> MovedNormal(
+    const Eigen::Matrix<Number, 3, 4>& matrix,
+    const Eigen::Matrix<Number, 3, 1>& n) {
+  const Eigen::Matrix<Number, 3, 1> x = matrix.col(0), y = matrix.col(1),
+                                    z = matrix.col(2);
+  return (n[0] * y.cross(z) + n[1] * z.cross(x) + n[2] * x.cross(y))
+      .stableNormalized();
+}
+
+Eigen::VectorXd BindPose(const Skeleton& skeleton,
+                         const WeightedSkin::Options& options) {
+  return options.rest_positions.size() == 0 ? skeleton.rest_positions()
+                                            : options.rest_positions;
+}
+
+// Those of the options, or those of the pose at which the mesh is bound.
+std::vector<WeightedSkin::Affine> JointFromMesh(
+    const Skeleton& skeleton, const WeightedSkin::Options& options) {
+  if (!options.joint_from_mesh.empty()) return options.joint_from_mesh;
+  WorldTransforms world_from_joints;
+  ForwardKinematics(skeleton, BindPose(skeleton, options), world_from_joints);
+  std::vector<WeightedSkin::Affine> joint_from_mesh;
+  for (const RigidTransform& world_from_joint : world_from_joints) {
+    joint_from_mesh.push_back(AffineOf(world_from_joint.Inverse()));
+  }
+  return joint_from_mesh;
+}
+
 DualQuaternion DualQuaternionOf(const Matrix3f& rotation,
                                 const Vector3f& translation) {
   const Eigen::Quaternionf q = Eigen::Quaternionf(rotation).normalized();
@@ -114,33 +152,32 @@ SkinWeights RigidWeights(int vertex_count, int joint) {
 }
 
 absl::StatusOr<std::shared_ptr<const WeightedSkin>> WeightedSkin::Create(
-    std::shared_ptr<const Skeleton> skeleton, const TriangleMesh& mesh,
+    const std::shared_ptr<const Skeleton>& skeleton, const TriangleMesh& mesh,
     const SkinWeights& weights, const Options& options) {
   Violations violations;
   violations.AddStatus("mesh", CheckMesh(mesh));
   CheckWeights(*skeleton, mesh.positions.size(), weights, violations);
   CheckMatrices(*skeleton, options, violations);
-  Eigen::VectorXd rest = options.rest_positions.size() == 0
-                             ? skeleton->rest_positions()
-                             : options.rest_positions;
-  violations.AddStatus("rest", CheckPositions(*skeleton, rest));
+  Options checked = options;
+  checked.rest_positions = BindPose(*skeleton, options);
+  violations.AddStatus("rest",
+                       CheckPositions(*skeleton, checked.rest_positions));
   if (absl::Status status = violations.ToStatus(); !status.ok()) return status;
   return std::shared_ptr<const WeightedSkin>(
-      new WeightedSkin(std::move(skeleton), mesh, weights, options, rest));
+      new WeightedSkin(skeleton, mesh, weights, checked));
 }
 
-WeightedSkin::WeightedSkin(std::shared_ptr<const Skeleton> skeleton,
+WeightedSkin::WeightedSkin(const std::shared_ptr<const Skeleton>& skeleton,
                            const TriangleMesh& mesh, const SkinWeights& weights,
-                           const Options& options,
-                           const Eigen::VectorXd& rest_pose)
-    : Skin(std::move(skeleton),
-           SlotsInOrder(static_cast<int>(mesh.positions.size())),
+                           const Options& options)
+    : Skin(skeleton, SlotsInOrder(static_cast<int>(mesh.positions.size())),
            BlocksFor(static_cast<int>(mesh.positions.size())), mesh.triangles,
-           mesh.positions, rest_pose),
+           RestMesh(*skeleton, mesh, weights, options).positions,
+           skeleton->rest_positions()),
       method_(options.method),
       influences_(weights.influences_per_vertex),
       joints_(weights.joints),
-      joint_from_mesh_(options.joint_from_mesh) {
+      joint_from_mesh_(JointFromMesh(*skeleton, options)) {
   for (size_t i = 0; i < weights.weights.size(); i += influences_) {
     double sum = 0;
     for (int k = 0; k < influences_; ++k) sum += weights.weights[i + k];
@@ -154,12 +191,6 @@ WeightedSkin::WeightedSkin(std::shared_ptr<const Skeleton> skeleton,
   for (const Eigen::Vector3d& normal : VertexNormals(mesh)) {
     normals_.push_back(normal.cast<float>());
   }
-  if (!joint_from_mesh_.empty()) return;
-  WorldTransforms world_from_joints;
-  ForwardKinematics(this->skeleton(), rest_pose, world_from_joints);
-  for (const RigidTransform& world_from_joint : world_from_joints) {
-    joint_from_mesh_.push_back(AffineOf(world_from_joint.Inverse()));
-  }
 }
 
 void WeightedSkin::Deform(const ConstVectorView& positions,
@@ -171,11 +202,9 @@ void WeightedSkin::Deform(const ConstVectorView& positions,
   const int joint_count = skeleton().joint_count();
   workspace.world_from_bind.resize(joint_count);
   for (int i = 0; i < joint_count; ++i) {
-    const RigidTransform& world_from_joint = workspace.world_from_joints[i];
-    Affine world_from_mesh =
-        world_from_joint.rotation.toRotationMatrix() * joint_from_mesh_[i];
-    world_from_mesh.col(3) += world_from_joint.translation;
-    workspace.world_from_bind[i] = world_from_mesh.cast<float>();
+    workspace.world_from_bind[i] =
+        Moved(workspace.world_from_joints[i], joint_from_mesh_[i])
+            .cast<float>();
   }
   blocks.Resize(block_count());
   if (method_ == BlendMethod::kLinear) {
@@ -201,13 +230,8 @@ void WeightedSkin::BlendLinearly(const SkinWorkspace& workspace,
       blended +=
           weights_[first + k] * workspace.world_from_bind[joints_[first + k]];
     }
-    // Normals go with the cofactors, the inverse transpose but for scale; it
-    // is there also where the blend is flat.
-    const Vector3f x = blended.col(0), y = blended.col(1), z = blended.col(2);
-    const Vector3f& n = normals_[v];
     blocks.Set(v, blended.leftCols<3>() * positions_[v] + blended.col(3),
-               (n[0] * y.cross(z) + n[1] * z.cross(x) + n[2] * x.cross(y))
-                   .stableNormalized());
+               MovedNormal(blended, normals_[v]));
   }
 }
 
@@ -236,6 +260,36 @@ void WeightedSkin::BlendDualQuaternions(const SkinWorkspace& workspace,
         2 * (w * dual - blended[7] * real + real.cross(dual));
     blocks.Set(v, rotate(positions_[v]) + translation, rotate(normals_[v]));
   }
+}
+
+TriangleMesh RestMesh(const Skeleton& skeleton, const TriangleMesh& mesh,
+                      const SkinWeights& weights,
+                      const WeightedSkin::Options& options) {
+  WorldTransforms rest;
+  ForwardKinematics(skeleton, skeleton.rest_positions(), rest);
+  const std::vector<WeightedSkin::Affine> joint_from_mesh =
+      JointFromMesh(skeleton, options);
+  std::vector<WeightedSkin::Affine> rest_from_mesh;
+  for (int i = 0; i < skeleton.joint_count(); ++i) {
+    rest_from_mesh.push_back(Moved(rest[i], joint_from_mesh[i]));
+  }
+  TriangleMesh moved;
+  moved.triangles = mesh.triangles;
+  const std::vector<Eigen::Vector3d> normals = VertexNormals(mesh);
+  const int count = weights.influences_per_vertex;
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    WeightedSkin::Affine blended = WeightedSkin::Affine::Zero();
+    double sum = 0;
+    for (size_t i = count * v; i < count * (v + 1); ++i) {
+      blended += weights.weights[i] * rest_from_mesh[weights.joints[i]];
+      sum += weights.weights[i];
+    }
+    blended /= sum;
+    moved.positions.push_back(blended.leftCols<3>() * mesh.positions[v] +
+                              blended.col(3));
+    moved.normals.push_back(MovedNormal(blended, normals[v]));
+  }
+  return moved;
 }
 
 size_t WeightedSkin::ByteSize() const {

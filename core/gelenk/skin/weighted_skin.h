@@ -52,7 +52,7 @@ class WeightedSkin : public Skin {
 
   // INVALID_ARGUMENT that lists what is wrong with mesh, weights or options.
   static absl::StatusOr<std::shared_ptr<const WeightedSkin>> Create(
-      std::shared_ptr<const Skeleton> skeleton, const TriangleMesh& mesh,
+      const std::shared_ptr<const Skeleton>& skeleton, const TriangleMesh& mesh,
       const SkinWeights& weights, const Options& options);
 
   BlendMethod method() const { return method_; }
@@ -64,9 +64,9 @@ class WeightedSkin : public Skin {
   size_t ByteSize() const override;
 
  private:
-  WeightedSkin(std::shared_ptr<const Skeleton> skeleton,
+  WeightedSkin(const std::shared_ptr<const Skeleton>& skeleton,
                const TriangleMesh& mesh, const SkinWeights& weights,
-               const Options& options, const Eigen::VectorXd& rest_pose);
+               const Options& options);
 
   void BlendLinearly(const SkinWorkspace& workspace,
                      VertexBlocks& blocks) const;
@@ -81,6 +81,12 @@ class WeightedSkin : public Skin {
   std::vector<Eigen::Vector3f> normals_;
   std::vector<Affine> joint_from_mesh_;
 };
+
+// What was bound elsewhere, in the skeleton's rest pose: what a LayeredSkin is
+// bound to. By linear blending; takes what WeightedSkin::Create takes.
+TriangleMesh RestMesh(const Skeleton& skeleton, const TriangleMesh& mesh,
+                      const SkinWeights& weights,
+                      const WeightedSkin::Options& options);
 
 }  // namespace gelenk
 

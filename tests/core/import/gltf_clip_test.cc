@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "gelenk/import/gltf_reader.h"
@@ -15,6 +14,7 @@
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/motion/sampler.h"
+#include "tests/core/import/gltf_buffer.h"
 #include "tests/testing/gltf_files.h"
 #include "tests/testing/random_pose.h"
 #include "tests/testing/random_skeleton.h"
@@ -23,8 +23,10 @@
 namespace gelenk {
 namespace {
 
+using ::gelenk::testing::Bytes;
 using ::gelenk::testing::Fails;
 using ::gelenk::testing::Glb;
+using ::gelenk::testing::GltfBuffer;
 using ::gelenk::testing::Random;
 using ::gelenk::testing::RandomPose;
 using ::gelenk::testing::RandomSkeleton;
@@ -36,33 +38,12 @@ constexpr absl::StatusCode kBad = absl::StatusCode::kInvalidArgument;
 // Numbers in the files have 24 bits.
 constexpr double kSinglePrecision = 1e-6;
 
-template <class T>
-std::string Bytes(const std::vector<T>& numbers) {
-  return {reinterpret_cast<const char*>(numbers.data()),
-          numbers.size() * sizeof(T)};
-}
-
 // Two joints: "hip", moved and turned by an armature above it, and "knee" with
 // a rest rotation; its buffer, accessors and channels are put together below.
-struct File {
-  std::string buffer;
-  std::string accessors;
+struct File : GltfBuffer {
   std::string samplers;
   std::string channels;
-  int views = 0;
-  std::string view_list;
 
-  int AddView(const std::string& bytes) {
-    absl::StrAppend(&view_list, views > 0 ? "," : "",
-                    "{\"buffer\":0,\"byteOffset\":", buffer.size(),
-                    ",\"byteLength\":", bytes.size(), "}");
-    buffer += bytes;
-    buffer.resize((buffer.size() + 3) / 4 * 4);
-    return views++;
-  }
-  void AddAccessor(const std::string& text) {
-    absl::StrAppend(&accessors, accessors.empty() ? "" : ",", "{", text, "}");
-  }
   void AddChannel(int node, const char* path, int input, int output,
                   const char* interpolation) {
     absl::StrAppend(
@@ -75,7 +56,7 @@ struct File {
   }
   int sampler_count = 0;
 
-  std::string Json(const std::string& buffer_json) const {
+  std::string Json(const std::string& members) const {
     return absl::StrCat(
         R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)",
         R"("skins":[{"joints":[1,2]}],"nodes":[)",
@@ -84,14 +65,9 @@ struct File {
         R"({"name":"hip","children":[2],"translation":[0,1,0]},)",
         R"({"name":"knee","translation":[0,1,0],"rotation":[0,0.6,0,0.8]}],)",
         R"("animations":[{"name":"move","channels":[)", channels,
-        "],\"samplers\":[", samplers, "]}],\"accessors\":[", accessors,
-        "],\"bufferViews\":[", view_list, "],\"buffers\":[", buffer_json, "]}");
+        "],\"samplers\":[", samplers, "]}],", members, "}");
   }
-  std::string Gltf() const {
-    return Json(absl::StrCat("{\"byteLength\":", buffer.size(), ",\"uri\":",
-                             "\"data:application/octet-stream;base64,",
-                             absl::Base64Escape(buffer), "\"}"));
-  }
+  std::string Gltf() const { return Json(Members()); }
 };
 
 File MovingFile() {
@@ -223,11 +199,11 @@ TEST(GltfClipTest, NormalizedIntegersStridesAndSparseValues) {
 TEST(GltfClipTest, BuffersInAGlbAndInOtherFiles) {
   const File file = MovingFile();
   const std::string plain =
-      absl::StrCat("{\"byteLength\":", file.buffer.size(), "}");
+      file.Members(absl::StrCat("{\"byteLength\":", file.buffer.size(), "}"));
   EXPECT_TRUE(ClipOf(Glb(file.Json(plain), file.buffer)).ok());
   EXPECT_THAT(ClipOf(file.Json(plain)).status(), Fails(kBad, "neither a uri"));
   const std::string other =
-      file.Json(absl::StrCat("{\"byteLength\":9,\"uri\":\"walk.bin\"}"));
+      file.Json(file.Members("{\"byteLength\":9,\"uri\":\"walk.bin\"}"));
   EXPECT_THAT(Animations(other).status(), Fails(kBad, "another file, \"walk"));
   const auto opened = Animations(other, [&](absl::string_view uri) {
     EXPECT_EQ(uri, "walk.bin");

@@ -19,10 +19,12 @@
 #include "gelenk/import/gltf_clip.h"
 #include "gelenk/import/gltf_import.h"
 #include "gelenk/import/gltf_reader.h"
+#include "gelenk/import/gltf_skin.h"
 #include "gelenk/import/gltf_writer.h"
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/motion/clip_frames.h"
 #include "tests/core/import/gltf_oracle.h"
+#include "tests/core/import/gltf_skin_oracle.h"
 #include "tests/testing/ik_targets.h"
 #include "tests/testing/random_pose.h"
 
@@ -32,12 +34,17 @@ namespace {
 namespace fs = std::filesystem;
 using ::gelenk::testing::EffectorPose;
 using ::gelenk::testing::GltfOracle;
+using ::gelenk::testing::GltfSkinOracle;
+using ::gelenk::testing::LargestError;
 using ::gelenk::testing::OraclePositionError;
 using ::gelenk::testing::PositionGoalFor;
 using ::gelenk::testing::Random;
+using ::gelenk::testing::RandomTurns;
 using ::gelenk::testing::StartNear;
+using ::gelenk::testing::TurnedPose;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 // Quaternions in single precision are unit to about 1e-7, and are made so.
 constexpr double kSinglePrecision = 1e-5;
@@ -170,6 +177,44 @@ TEST(GltfCorpusTest, EveryAnimationPlays) {
       EXPECT_TRUE(ReadGltf(*out).ok());
     }
   }
+}
+
+// Every vertex where the format's formula has it, in any pose.
+TEST(GltfCorpusTest, EverySkinDeformsAsTheFormulaSays) {
+  const std::vector<fs::path> models = Models(CorpusFolder());
+  if (models.empty()) {
+    GTEST_SKIP() << "SKIPPED: no models in " << CorpusFolder();
+  }
+  Random random(1);
+  int skins = 0;
+  for (const fs::path& path : models) {
+    SCOPED_TRACE(path);
+    const std::string bytes = ReadFile(path);
+    const absl::StatusOr<GltfDocument> document = ReadGltf(bytes);
+    ASSERT_TRUE(document.ok()) << document.status();
+    if (document->skins.empty()) continue;
+    ++skins;
+    const absl::StatusOr<GltfImport> import = ImportGltf(*document);
+    ASSERT_TRUE(import.ok()) << import.status();
+    const absl::StatusOr<GltfSkinnedMesh> read =
+        ReadGltfSkin(bytes, *document, *import);
+    ASSERT_TRUE(read.ok()) << read.status();
+    EXPECT_THAT(read->warnings, IsEmpty());
+    const auto skin = WeightedSkin::Create(import->skeleton, read->mesh,
+                                           read->weights, BindOptions(*read));
+    ASSERT_TRUE(skin.ok()) << skin.status();
+    const GltfSkinOracle oracle(bytes);
+    SkinWorkspace workspace;
+    VertexBlocks blocks;
+    for (double most_rad : {0.0, 0.5, 2.0}) {
+      const TurnedPose pose = RandomTurns(random, *import, most_rad);
+      (*skin)->Deform(pose.positions, {}, workspace, blocks);
+      EXPECT_LT(LargestError(oracle.Positions(pose.turns), **skin, blocks),
+                kSinglePrecision)
+          << most_rad;
+    }
+  }
+  EXPECT_GT(skins, 0);
 }
 
 // These hold all sorts of faults; what is no fault must import.
