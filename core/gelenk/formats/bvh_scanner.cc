@@ -4,16 +4,11 @@
 #include <system_error>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
 #include "gelenk/formats/decimal_number.h"
 
 namespace gelenk {
 namespace {
-
-// As much of a token as an error repeats.
-constexpr size_t kMaxQuotedBytes = 40;
 
 bool IsBlank(char c) {
   return c == ' ' || (static_cast<unsigned char>(c - '\t') <= '\r' - '\t');
@@ -109,29 +104,12 @@ absl::StatusOr<int64_t> BvhScanner::TakeCount() {
 
 std::string BvhScanner::Position() {
   SkipBlanks();
-  for (; counted_ < at_; ++counted_) {
-    if (!EndsLine(text_[counted_])) continue;
-    const size_t next = counted_ + 1;
-    // CR LF ends one line, not two.
-    if (text_[counted_] == '\r' && next < text_.size() && text_[next] == '\n') {
-      continue;
-    }
-    ++line_;
-    line_start_ = next;
-  }
-  return absl::StrCat("line ", line_, ", column ", at_ - line_start_ + 1);
+  return position_.Of(at_);
 }
 
 absl::Status BvhScanner::Expected(absl::string_view what) {
-  absl::string_view token = Peek();
-  std::string got = "end of file";
-  if (!token.empty()) {
-    const absl::string_view quoted = token.substr(0, kMaxQuotedBytes);
-    got = absl::StrCat("\"", absl::CHexEscape(quoted),
-                       quoted.size() < token.size() ? "..." : "", "\"");
-  }
-  return absl::InvalidArgumentError(
-      absl::StrCat(Position(), ": expected ", what, ", got ", got));
+  const absl::string_view token = Peek();
+  return position_.Expected(at_, what, token, "end of file");
 }
 
 }  // namespace gelenk

@@ -12,12 +12,13 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "gelenk/formats/text_position.h"
 
 namespace gelenk {
 
 class BvhScanner {
  public:
-  explicit BvhScanner(absl::string_view text) : text_(text) {}
+  explicit BvhScanner(absl::string_view text) : text_(text), position_(text) {}
 
   // Returns true when a line ended among the blanks.
   bool SkipBlanks();
@@ -45,8 +46,7 @@ class BvhScanner {
   // An integer >= 0.
   absl::StatusOr<int64_t> TakeCount();
 
-  // "line 3, column 9", both from 1, of the next token. Lines are counted on
-  // from the last call, so that many calls cost linear time together.
+  // "line 3, column 9", both from 1, of the next token.
   std::string Position();
   // INVALID_ARGUMENT `<position>: expected <what>, got "<next token>"`.
   absl::Status Expected(absl::string_view what);
@@ -57,10 +57,7 @@ class BvhScanner {
  private:
   absl::string_view text_;
   size_t at_ = 0;
-  // What Position knows: lines that end before counted_.
-  size_t counted_ = 0;
-  size_t line_ = 1;
-  size_t line_start_ = 0;
+  TextPosition position_;
 };
 
 }  // namespace gelenk
