@@ -57,6 +57,9 @@ absl::Status CheckOptions(const ServerOptions& options) {
   CheckAtLeast("max_sessions", limits.max_sessions, 1, violations);
   CheckAtLeast("max_skeletons", limits.max_skeletons, 1, violations);
   CheckAtLeast("max_joints", limits.max_joints, 1, violations);
+  CheckAtLeast("max_clips", limits.max_clips, 1, violations);
+  CheckAtLeast("max_clip_numbers", limits.max_clip_numbers, 1, violations);
+  CheckAtLeast("max_clip_revisions", limits.max_clip_revisions, 1, violations);
   CheckAtLeast("max_message_bytes", limits.max_message_bytes, 1024, violations);
   CheckAtLeast("max_import_bytes", limits.max_import_bytes, 1, violations);
   CheckAtLeast("max_imports", limits.max_imports, 1, violations);

@@ -21,6 +21,13 @@ struct Limits {
   size_t max_skeleton_bytes = size_t{256} << 20;
   // One skeleton: a body with fingers and face has about 200 joints.
   int max_joints = 1024;
+  int max_clips = 1000;
+  // All clips together; a minute of a 64-joint body at 60 Hz is 8 MB.
+  size_t max_clip_bytes = size_t{1} << 30;
+  // One clip, as frames: 20 minutes of a 64-joint body at 100 Hz.
+  int64_t max_clip_numbers = int64_t{1} << 25;
+  // Of one clip: what can be undone. Each is as large as the clip.
+  int max_clip_revisions = 100;
   // gRPC's own default; larger things come in pieces.
   int max_message_bytes = 4 << 20;
   // One imported file; an hour of motion capture is about 200 MB.

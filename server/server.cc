@@ -19,6 +19,7 @@
 #include "server/rpc/health_service.h"
 #include "server/rpc/io_thread.h"
 #include "server/rpc/kinematics_service.h"
+#include "server/rpc/motion_service.h"
 #include "server/rpc/service_state.h"
 #include "server/rpc/session_service.h"
 
@@ -100,6 +101,7 @@ class GrpcServer final : public Server {
     builder.SetMaxReceiveMessageSize(options.limits.max_message_bytes);
     builder.RegisterService(&kinematics_);
     builder.RegisterService(&sessions_);
+    builder.RegisterService(&motion_);
     builder.RegisterService(&health_);
     for (int i = 0; i < options.io_threads; ++i) {
       threads_.push_back(std::make_unique<IoThread>(
@@ -119,6 +121,7 @@ class GrpcServer final : public Server {
     for (const std::unique_ptr<IoThread>& thread : threads_) {
       ServeKinematics(&kinematics_, &state_, thread.get());
       ServeSessions(&sessions_, &state_, thread.get());
+      ServeMotion(&motion_, &state_, thread.get());
       ServeHealth(&health_, &state_, thread.get());
       thread->Start();
     }
@@ -156,6 +159,7 @@ class GrpcServer final : public Server {
   ServiceState state_;
   v1::KinematicsService::AsyncService kinematics_;
   v1::SessionService::AsyncService sessions_;
+  v1::MotionService::AsyncService motion_;
   grpc::health::v1::Health::AsyncService health_;
   std::vector<std::unique_ptr<IoThread>> threads_;
   std::unique_ptr<grpc::Server> server_;

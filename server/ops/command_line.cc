@@ -39,6 +39,13 @@ void AddLimits(CLI::App& app, Limits& limits) {
   AddNumber(app, "--max-skeleton-bytes", limits.max_skeleton_bytes,
             "All skeletons together, bytes");
   AddNumber(app, "--max-joints", limits.max_joints, "Joints of one skeleton");
+  AddNumber(app, "--max-clips", limits.max_clips, "Clips at a time");
+  AddNumber(app, "--max-clip-bytes", limits.max_clip_bytes,
+            "All clips together, bytes");
+  AddNumber(app, "--max-clip-numbers", limits.max_clip_numbers,
+            "One clip: frames times the numbers of a pose");
+  AddNumber(app, "--max-clip-revisions", limits.max_clip_revisions,
+            "Revisions of a clip that are kept");
   AddNumber(app, "--max-message-bytes", limits.max_message_bytes,
             "One message, bytes");
   AddNumber(app, "--max-import-bytes", limits.max_import_bytes,

@@ -16,11 +16,11 @@
 #include "server/rpc/batch_method.h"
 #include "server/rpc/chain_methods.h"
 #include "server/rpc/find_skeleton.h"
-#include "server/rpc/import_skeleton_call.h"
 #include "server/rpc/page.h"
 #include "server/rpc/skeleton_message.h"
+#include "server/rpc/skeleton_upload.h"
 #include "server/rpc/unary_call.h"
-#include "server/rpc/workspace_call.h"
+#include "server/rpc/workspace_method.h"
 #include "server/version.h"
 
 namespace gelenk::server {
@@ -92,9 +92,11 @@ absl::Status DeleteSkeleton(ServiceState& state,
                             const v1::DeleteSkeletonRequest& request) {
   absl::Status status = CheckResourceName("name", kSkeletons, request.name());
   if (!status.ok()) return status;
-  status = state.sessions.RemoveUnused(
-      kDefaultTenant, request.name(), absl::Now(),
-      [&] { return state.skeletons.Delete(kDefaultTenant, request.name()); });
+  status = state.clips.RemoveUnused(kDefaultTenant, request.name(), [&] {
+    return state.sessions.RemoveUnused(
+        kDefaultTenant, request.name(), absl::Now(),
+        [&] { return state.skeletons.Delete(kDefaultTenant, request.name()); });
+  });
   if (request.allow_missing() && absl::IsNotFound(status)) {
     return absl::OkStatus();
   }
@@ -247,8 +249,8 @@ void ServeKinematics(Service* service, ServiceState* state, IoThread* thread) {
       state, thread);
   ServeChains(service, state, thread);
   ServeBatch(service, state, thread);
-  WorkspaceCall::Start(service, state, thread);
-  ImportSkeletonCall::Start(service, state, thread);
+  ServeWorkspace(service, state, thread);
+  ServeSkeletonUploads(service, state, thread);
 }
 
 }  // namespace gelenk::server

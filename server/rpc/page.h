@@ -33,7 +33,7 @@ inline absl::StatusOr<size_t> PageSize(int requested) {
 template <class Item, class Name>
 std::string TakeNextPageToken(size_t size, std::vector<Item>& page, Name name) {
   if (page.size() <= size) return "";
-  page.resize(size);
+  page.erase(page.begin() + size, page.end());
   return name(page.back());
 }
 

@@ -9,6 +9,7 @@
 #include "server/options.h"
 #include "server/rpc/worker_pool.h"
 #include "server/session/session_registry.h"
+#include "server/store/clip_store.h"
 #include "server/store/skeleton_store.h"
 
 namespace gelenk::server {
@@ -21,6 +22,10 @@ struct ServiceState {
                    server_options.limits.max_skeleton_bytes},
                   random),
         sessions(server_options.limits.max_sessions, random),
+        clips({server_options.limits.max_clips,
+               server_options.limits.max_clip_bytes,
+               server_options.limits.max_clip_revisions},
+              skeletons, random),
         workers(server_options.worker_threads,
                 server_options.limits.max_waiting_calls,
                 server_options.instruction_set) {}
@@ -28,6 +33,7 @@ struct ServiceState {
   const ServerOptions options;
   SkeletonStore skeletons;
   SessionRegistry sessions;
+  ClipStore clips;
 
   // SIGTERM was seen: no new sessions, streams are asked to leave.
   std::atomic<bool> draining{false};

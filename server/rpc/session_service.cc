@@ -11,6 +11,7 @@
 #include "convert/solver.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/kinematics/forward_kinematics.h"
+#include "server/rpc/find_session.h"
 #include "server/rpc/page.h"
 #include "server/rpc/session_message.h"
 #include "server/rpc/streaming_solve_call.h"
@@ -34,14 +35,6 @@ absl::Status CheckAffinityKey(absl::string_view key) {
                  absl::StrCat("want at most ", kMaxAffinityKeyBytes,
                               " visible ASCII characters"));
   return violations.ToStatus();
-}
-
-absl::StatusOr<std::shared_ptr<Session>> FindSession(const ServiceState& state,
-                                                     absl::string_view field,
-                                                     const std::string& name) {
-  absl::Status status = CheckResourceName(field, kSessions, name);
-  if (!status.ok()) return status;
-  return state.sessions.Find(kDefaultTenant, name, absl::Now());
 }
 
 // Makes the problem that a session of `parts`, read with `status`, would solve;

@@ -20,7 +20,8 @@ class RequestLog {
   static constexpr size_t kCapacity = 4096;
 
   // The name of the resource that the request made; empty when it is new.
-  std::string Find(absl::string_view tenant, absl::string_view request_id) {
+  std::string Find(absl::string_view tenant,
+                   absl::string_view request_id) const {
     if (request_id.empty()) return "";
     const auto found =
         names_.find({std::string(tenant), std::string(request_id)});

@@ -24,6 +24,7 @@
 #include "gelenk/client/cancellation.h"
 #include "gelenk/client/status.h"
 #include "gelenk/v1/kinematics_service.grpc.pb.h"
+#include "gelenk/v1/motion_service.grpc.pb.h"
 #include "gelenk/v1/session_service.grpc.pb.h"
 
 namespace gelenk::client {
@@ -59,8 +60,9 @@ class Connection {
 
   v1::KinematicsService::Stub& kinematics() { return *kinematics_; }
   v1::SessionService::Stub& sessions() { return *sessions_; }
+  v1::MotionService::Stub& motion() { return *motion_; }
 
-  // One unary call of either service, given as a pointer to the stub's method.
+  // One unary call of any service, given as a pointer to the stub's method.
   template <class Stub, class Request, class Response>
   absl::StatusOr<Response> Call(
       grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
@@ -77,11 +79,13 @@ class Connection {
   v1::SessionService::Stub& StubOf(v1::SessionService::Stub*) {
     return *sessions_;
   }
+  v1::MotionService::Stub& StubOf(v1::MotionService::Stub*) { return *motion_; }
 
   const ConnectionOptions options_;
   const std::shared_ptr<grpc::Channel> channel_;
   const std::unique_ptr<v1::KinematicsService::Stub> kinematics_;
   const std::unique_ptr<v1::SessionService::Stub> sessions_;
+  const std::unique_ptr<v1::MotionService::Stub> motion_;
 };
 
 // Sets the metadata that keeps a session on its server; an empty key sets none.

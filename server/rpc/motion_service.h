@@ -1,0 +1,17 @@
+// MotionService: clips, keyframes, processing, retargeting, playing.
+#ifndef GELENK_SERVER_RPC_MOTION_SERVICE_H_
+#define GELENK_SERVER_RPC_MOTION_SERVICE_H_
+
+#include "gelenk/v1/motion_service.grpc.pb.h"
+#include "server/rpc/io_thread.h"
+#include "server/rpc/service_state.h"
+
+namespace gelenk::server {
+
+// Serves all methods on `thread`.
+void ServeMotion(v1::MotionService::AsyncService* service, ServiceState* state,
+                 IoThread* thread);
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_RPC_MOTION_SERVICE_H_

@@ -1,0 +1,17 @@
+// KinematicsService.ComputeWorkspace: computed first, then written part by
+// part.
+#ifndef GELENK_SERVER_RPC_WORKSPACE_METHOD_H_
+#define GELENK_SERVER_RPC_WORKSPACE_METHOD_H_
+
+#include "gelenk/v1/kinematics_service.grpc.pb.h"
+#include "server/rpc/io_thread.h"
+#include "server/rpc/service_state.h"
+
+namespace gelenk::server {
+
+void ServeWorkspace(v1::KinematicsService::AsyncService* service,
+                    ServiceState* state, IoThread* thread);
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_RPC_WORKSPACE_METHOD_H_
