@@ -8,6 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <random>
@@ -19,6 +20,7 @@
 #include "gelenk/skin/control_net.h"
 #include "gelenk/skin/layered_skin.h"
 #include "gelenk/skin/mesh_around.h"
+#include "gelenk/skin/vertex_stream.h"
 
 namespace gelenk::benchmarks {
 namespace {
@@ -108,6 +110,59 @@ void Frame(benchmark::State& state, const Worm& worm) {
     at = (at + 1) % worm.poses.size();
     worm.skin->Deform(worm.poses[at], {}, workspace, blocks);
     benchmark::ClobberMemory();
+  }
+  Count(state, worm.skin->vertex_count());
+}
+
+// A second of swinging at 60 Hz, quantised.
+std::vector<QuantizedBlocks> SwingingFrames(const Worm& worm) {
+  constexpr int kFrames = 60;
+  const Eigen::VectorXd neutral = NeutralPositions(*worm.skeleton);
+  Eigen::VectorXd velocity(worm.skeleton->velocity_count());
+  Eigen::VectorXd pose = neutral;
+  SkinWorkspace workspace;
+  std::vector<QuantizedBlocks> frames(kFrames);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    for (int i = 0; i < velocity.size(); ++i) {
+      velocity[i] = 0.05 * std::sin(2 * M_PI * frame / kFrames + i);
+    }
+    Integrate(*worm.skeleton, neutral, velocity, pose);
+    worm.skin->DeformQuantized(pose, {}, workspace, frames[frame]);
+  }
+  return frames;
+}
+
+// Of frames that are deformed and quantised already.
+void EncodeDifferences(benchmark::State& state, const Worm& worm) {
+  const std::vector<QuantizedBlocks> frames = SwingingFrames(worm);
+  DeltaEncoder encoder(static_cast<int>(frames.size()));
+  std::string bytes;
+  size_t at = 0;
+  double size = 0;
+  for (auto _ : state) {
+    encoder.Encode(frames[at++ % frames.size()], bytes);
+    size += static_cast<double>(bytes.size());
+  }
+  Count(state, worm.skin->vertex_count());
+  state.counters["bytes_per_vertex"] = size /
+                                       static_cast<double>(state.iterations()) /
+                                       worm.skin->vertex_count();
+}
+
+void DecodeDifferences(benchmark::State& state, const Worm& worm) {
+  const std::vector<QuantizedBlocks> frames = SwingingFrames(worm);
+  DeltaEncoder encoder(static_cast<int>(frames.size()));
+  std::vector<std::string> encoded(frames.size());
+  for (size_t i = 0; i < frames.size(); ++i) {
+    encoder.Encode(frames[i], encoded[i]);
+  }
+  DeltaDecoder decoder;
+  QuantizedBlocks blocks;
+  size_t at = 0;
+  for (auto _ : state) {
+    if (!decoder.Decode(encoded[at++ % encoded.size()], blocks).ok()) {
+      state.SkipWithError("no frame");
+    }
   }
   Count(state, worm.skin->vertex_count());
 }
@@ -226,6 +281,10 @@ int Register() {
     if (count > 10000) continue;
     add("volumes/20_links", [=](benchmark::State& s) { Volumes(s, *worm); });
     add("folds/20_links", [=](benchmark::State& s) { Folds(s, *worm); });
+    add("differences/encode" + size,
+        [=](benchmark::State& s) { EncodeDifferences(s, *worm); });
+    add("differences/decode" + size,
+        [=](benchmark::State& s) { DecodeDifferences(s, *worm); });
     add("control_points" + size,
         [=](benchmark::State& s) { ControlPoints(s, *worm); });
   }

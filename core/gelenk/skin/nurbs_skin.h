@@ -23,7 +23,10 @@
 #include "absl/status/statusor.h"
 #include "gelenk/skin/kernel/tessellate_layout.h"
 #include "gelenk/skin/layered_skin.h"
+#include "gelenk/skin/nurbs_fit.h"
 #include "gelenk/skin/nurbs_surface.h"
+#include "gelenk/skin/nurbs_tessellation.h"
+#include "gelenk/skin/nurbs_topology.h"
 #include "gelenk/skin/skin.h"
 #include "gelenk/skin/volume_rig.h"
 
@@ -66,49 +69,21 @@ class NurbsSkin : public Skin {
   size_t ByteSize() const override;
 
  private:
-  friend class NurbsFitting;
-
-  // Bases at fixed parameters.
-  struct AxisTable {
-    std::vector<double> parameters;
-    std::vector<int> first;
-    std::vector<float> values;
-    std::vector<float> slopes;
-  };
-  // A grid of vertices without doubles at seams and poles.
-  struct Grid {
-    std::vector<int> slots;  // of vertices
-    std::vector<Eigen::Vector2d> parameters;
-    std::vector<Triangle> triangles;
-    std::vector<Eigen::Vector3d> positions;  // at rest
-  };
-  struct Tessellation {
-    AxisTable u;  // a row each
-    AxisTable v;  // whole blocks of columns; the last are repeated
-    int column_count = 0;
-    Grid grid;
-  };
-
-  NurbsSkin(const VolumeRig& rig, NurbsSurface surface,
-            std::shared_ptr<const LayeredSkin> greville,
-            std::vector<int> greville_vertices, Eigen::MatrixXd u_inverse,
-            Eigen::MatrixXd v_inverse, double error_m,
-            Tessellation tessellation);
+  NurbsSkin(const VolumeRig& rig, NurbsFit fit, NurbsTessellation tessellation);
 
   // Rows w x, w y, w z of all points, into workspace.net.
   void FitNet(const VolumeFrame& frame, SkinWorkspace& workspace) const;
   void MendNormals(VertexBlocks& blocks) const;
 
   NurbsSurface surface_;
+  NurbsTopology topology_;
   std::shared_ptr<const LayeredSkin> greville_;
   std::vector<int> greville_vertices_;  // of each point of the net
   std::vector<double> greville_weights_;
   Eigen::MatrixXd u_inverse_;  // net from Greville points
   Eigen::MatrixXd v_inverse_;
   double estimated_error_m_;
-  Tessellation tessellation_;
-  bool closed_u_, closed_v_;
-  bool pole_[4];  // first and last row, first and last column
+  NurbsTessellation tessellation_;
   kernel::TessellateFunction tessellate_;
 };
 

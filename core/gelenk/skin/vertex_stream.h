@@ -1,7 +1,7 @@
 // Frames of a skin as bytes, for whoever draws it elsewhere.
 //
 // Four encodings, by how much the client does: floats (24 bytes a vertex),
-// quantised (8), differences between quantised frames (about 2 to 3), and
+// quantised (8), differences between quantised frames (2 to 3), and
 // control planes (about 150 bytes a link, whatever the mesh; see
 // control_plane_stream.h). Vertices are in the order of slots, in blocks of
 // sixteen; a client maps its vertices by Skin::slots() once.
@@ -10,12 +10,10 @@
 // all little-endian:
 //   kFloat32    per block rows x, y, z, normal x, y, z of sixteen floats
 //   kQuantized  per block rows x, y, z of sixteen uint16, two of sixteen int8
-//   kDelta      per block five rows: a byte with the number of bits b, then
-//               sixteen numbers of b bits, packed from the lowest bit on: the
-//               difference from what the frames before predict (2 a - b of
-//               positions, a of normals; modulo 2^16 and 2^8), with the sign in
-//               the lowest bit. In a keyframe from the lane before, in the
-//               first lane from 0.
+//   kDelta      per block the five rows of kQuantized as packed_row.h has it:
+//               differences from what the frames before predict (2 a - b of
+//               positions, a of normals; modulo 2^16 and 2^8). The frame after
+//               a keyframe is predicted as a; in a keyframe it is 0.
 //
 // Decoders take bytes from anybody: INVALID_ARGUMENT for what is malformed.
 // Nothing is allocated once buffers have grown.
@@ -53,6 +51,9 @@ inline constexpr uint32_t kMaxStreamBlocks = 1 << 17;
 void AppendHeader(const VertexStreamHeader& header, std::string& bytes);
 // Checks magic, version, encoding, box and count.
 absl::StatusOr<VertexStreamHeader> ReadHeader(absl::string_view bytes);
+// The same, and that the encoding is the one that is wanted.
+absl::StatusOr<VertexStreamHeader> ReadHeader(absl::string_view bytes,
+                                              VertexEncoding encoding);
 
 // Each replaces `bytes`.
 void EncodeFloats(const VertexBlocks& blocks, uint32_t frame_number,
@@ -68,7 +69,7 @@ class DeltaEncoder {
   // A keyframe at least every `keyframe_interval` frames, >= 1.
   explicit DeltaEncoder(int keyframe_interval);
 
-  // Frames of one skin. Replaces `bytes`. About 10 ns a vertex.
+  // Frames of one skin. Replaces `bytes`. About 20 ns a vertex.
   void Encode(const QuantizedBlocks& blocks, std::string& bytes);
   // The next frame is a keyframe: a client joined, or lost one.
   void RequestKeyframe() { since_keyframe_ = keyframe_interval_; }

@@ -133,8 +133,8 @@ TEST(VertexStreamTest, DifferencesOfAMotionAreSmallAndExact) {
   }
   const double bytes_per_vertex = size / (120.0 * walk.skin().vertex_count());
   RecordProperty("bytes_per_vertex", std::to_string(bytes_per_vertex));
-  // Against 8 quantised.
-  EXPECT_LT(bytes_per_vertex, 4);
+  // Against 8 quantised; a mesh codec on the same differences takes 2.8.
+  EXPECT_LT(bytes_per_vertex, 2.8);
 }
 
 TEST(VertexStreamTest, LostFrameIsNoticedAndMended) {
@@ -164,6 +164,31 @@ TEST(VertexStreamTest, LostFrameIsNoticedAndMended) {
   const QuantizedBlocks next = encode();
   ASSERT_TRUE(decoder.Decode(bytes, back).ok());
   EXPECT_TRUE(AreSame(next, back));
+}
+
+// Nobody asks: the next keyframe comes by itself.
+TEST(VertexStreamTest, EveryLossHealsAtTheNextKeyframe) {
+  Random random(6);
+  constexpr int kInterval = 5;
+  for (int lost = 0; lost < 2 * kInterval; ++lost) {
+    DeltaEncoder encoder(kInterval);
+    DeltaDecoder decoder;
+    std::string bytes;
+    QuantizedBlocks back;
+    const int next_keyframe = (lost / kInterval + 1) * kInterval;
+    for (int frame = 0; frame < 3 * kInterval; ++frame) {
+      const QuantizedBlocks blocks = RandomBlocks(random, 2);
+      encoder.Encode(blocks, bytes);
+      if (frame == lost) continue;
+      const absl::Status status = decoder.Decode(bytes, back);
+      if (frame > lost && frame < next_keyframe) {
+        EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
+      } else {
+        ASSERT_TRUE(status.ok()) << status;
+        EXPECT_TRUE(AreSame(blocks, back));
+      }
+    }
+  }
 }
 
 TEST(VertexStreamTest, AnotherSkinStartsWithAKeyframe) {

@@ -1,0 +1,288 @@
+// Frames of every encoding with what they hold, in
+// tests/golden/skin_stream.json: decoders in other languages are tested against
+// the same file. To write it anew after the format has changed:
+// GELENK_WRITE_GOLDEN=1 with this test.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "absl/strings/escaping.h"
+#include "gelenk/skin/control_plane_stream.h"
+#include "gelenk/skin/example_shapes.h"
+#include "gelenk/skin/layered_skin.h"
+#include "gelenk/skin/mesh_around.h"
+#include "gelenk/skin/vertex_stream.h"
+#include "tests/core/skin/skin_chains.h"
+
+namespace gelenk {
+namespace {
+
+using Eigen::Vector3d;
+using nlohmann::json;
+
+constexpr char kPath[] = GELENK_SOURCE_DIR "/tests/golden/skin_stream.json";
+// Of coordinates up to 2 m, as floats.
+constexpr double kFloatTolerance = 2e-6;
+constexpr int kKeyframeInterval = 4;
+constexpr int kFrames = 7;
+// Of the humanoid's vertices every one so far is in the file.
+constexpr int kVertexStep = 8;
+
+std::string Base64(absl::string_view bytes) {
+  return absl::Base64Escape(bytes);
+}
+
+std::string BytesOf(const json& base64) {
+  std::string bytes;
+  EXPECT_TRUE(absl::Base64Unescape(base64.get<std::string>(), &bytes));
+  return bytes;
+}
+
+std::string BytesOf(const QuantizedBlocks& blocks) {
+  return {
+      reinterpret_cast<const char*>(blocks.data()),
+      static_cast<size_t>(blocks.block_count()) * kernel::kQuantizedBlockBytes};
+}
+
+void AddVector(const Vector3d& vector, json& list) {
+  for (double number : vector) list.push_back(static_cast<float>(number));
+}
+
+// A tube on two links, whose elbow bends from frame to frame.
+class Arm {
+ public:
+  Arm() : skeleton_(testing::TwoLinkArm(Vector3d::UnitY())) {
+    TubeShape tube;
+    tube.length_m = 2;
+    tube.radius_m = 0.2;
+    tube.rings = 4;
+    tube.around = 7;
+    skin_ = LayeredSkin::Bind(*VolumeRig::Create(skeleton_).value(),
+                              TubeMesh(tube).value())
+                .value();
+  }
+
+  const LayeredSkin& skin() const { return *skin_; }
+
+  VertexBlocks FloatsAt(int frame) {
+    VertexBlocks blocks;
+    skin_->Deform(PoseAt(frame), {}, workspace_, blocks);
+    return blocks;
+  }
+  QuantizedBlocks QuantizedAt(int frame) {
+    QuantizedBlocks blocks;
+    skin_->DeformQuantized(PoseAt(frame), {}, workspace_, blocks);
+    return blocks;
+  }
+
+ private:
+  Eigen::VectorXd PoseAt(int frame) const {
+    return testing::ElbowAt(*skeleton_, 0.3 + 0.05 * frame * frame);
+  }
+
+  std::shared_ptr<const Skeleton> skeleton_;
+  std::shared_ptr<const LayeredSkin> skin_;
+  SkinWorkspace workspace_;
+};
+
+template <class Blocks>
+json VerticesOf(const Skin& skin, const Blocks& blocks,
+                const std::string& bytes) {
+  json positions = json::array(), normals = json::array();
+  for (int slot : skin.slots()) {
+    AddVector(blocks.position(slot).template cast<double>(), positions);
+    AddVector(blocks.normal(slot).template cast<double>(), normals);
+  }
+  return {
+      {"bytes", Base64(bytes)}, {"positions", positions}, {"normals", normals}};
+}
+
+struct Body {
+  SkinShape shape = MakeSkinShape("humanoid", 500).value();
+  std::shared_ptr<const LayeredSkin> skin =
+      LayeredSkin::Bind(*VolumeRig::Create(shape.skeleton).value(), shape.mesh)
+          .value();
+};
+
+json LayoutOf(const LayeredSkin& skin) {
+  const VolumeRig& rig = skin.rig();
+  json layout;
+  for (int i = 0; i < rig.link_count(); ++i) {
+    layout["links"].push_back({{"parent", rig.link(i).parent},
+                               {"continuation", rig.link(i).continuation},
+                               {"lengthM", rig.link(i).length_m},
+                               {"startSpacingM", rig.start_spacing_m(i)},
+                               {"endSpacingM", rig.end_spacing_m(i)},
+                               {"isBranch", rig.is_branch(i)}});
+  }
+  for (const char* name :
+       {"vertexVolumes", "coordinates", "normalComponents", "partVertices",
+        "partVolumes", "partCoordinates", "partShares"}) {
+    layout[name] = json::array();
+  }
+  const std::vector<Vector3d> normals = VertexNormals(skin.mesh());
+  for (int v = 0; v < skin.vertex_count(); v += kVertexStep) {
+    const VertexBinding& vertex = skin.binding().vertices[v];
+    const auto add_coordinates = [&](const VolumeCoordinates& at,
+                                     const char* name) {
+      AddVector({at.u, at.s, at.t}, layout[name]);
+    };
+    layout["vertexVolumes"].push_back(vertex.volume);
+    add_coordinates(vertex.at, "coordinates");
+    AddVector(rig.rest()
+                      .volume(vertex.volume)
+                      .Evaluate(vertex.at)
+                      .Jacobian()
+                      .transpose() *
+                  normals[v],
+              layout["normalComponents"]);
+    for (const BlendShare& share : skin.binding().SharesOf(v)) {
+      layout["partVertices"].push_back(v / kVertexStep);
+      layout["partVolumes"].push_back(share.volume);
+      add_coordinates(share.at, "partCoordinates");
+      layout["partShares"].push_back(static_cast<float>(share.share));
+    }
+  }
+  return layout;
+}
+
+json ControlPlaneFrame(const Body& body, int number) {
+  const VolumeRig& rig = body.skin->rig();
+  Eigen::VectorXd velocity =
+      Eigen::VectorXd::Zero(body.shape.skeleton->velocity_count());
+  for (int i = 0; i < velocity.size(); ++i) {
+    velocity[i] = 0.3 * number * std::sin(1.0 + i);
+  }
+  Eigen::VectorXd pose = rig.rest_positions();
+  Integrate(*body.shape.skeleton, rig.rest_positions(), velocity, pose);
+  VolumeFrame frame;
+  rig.Evaluate(pose, {}, frame);
+  std::string bytes;
+  EncodeControlPlanes(rig, frame, number, bytes);
+  std::vector<Vector3d> positions, normals;
+  body.skin->DeformExactly(frame, positions, &normals);
+  json result = {{"bytes", Base64(bytes)},
+                 {"positions", json::array()},
+                 {"normals", json::array()}};
+  for (size_t v = 0; v < positions.size(); v += kVertexStep) {
+    AddVector(positions[v], result["positions"]);
+    AddVector(normals[v], result["normals"]);
+  }
+  return result;
+}
+
+json Vectors() {
+  Arm arm;
+  json vectors;
+  vectors["slots"] = arm.skin().slots();
+  std::string bytes;
+  EncodeFloats(arm.FloatsAt(0), 0, bytes);
+  vectors["float32"] = VerticesOf(arm.skin(), arm.FloatsAt(0), bytes);
+  EncodeQuantized(arm.QuantizedAt(0), 0, bytes);
+  vectors["quantized"] = VerticesOf(arm.skin(), arm.QuantizedAt(0), bytes);
+  DeltaEncoder encoder(kKeyframeInterval);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const QuantizedBlocks blocks = arm.QuantizedAt(frame);
+    encoder.Encode(blocks, bytes);
+    vectors["delta"].push_back({{"bytes", Base64(bytes)},
+                                {"isKeyframe", frame % kKeyframeInterval == 0},
+                                {"blocks", Base64(BytesOf(blocks))}});
+  }
+  const Body body;
+  vectors["controlPlanes"] = {
+      {"layout", LayoutOf(*body.skin)},
+      {"frames", {ControlPlaneFrame(body, 0), ControlPlaneFrame(body, 1)}}};
+  return vectors;
+}
+
+json ReadVectors() {
+  std::ifstream file(kPath);
+  return json::parse(file);
+}
+
+template <class Blocks>
+void ExpectVertices(const json& vectors, const json& want,
+                    const Blocks& blocks) {
+  const std::vector<int> slots = vectors["slots"];
+  const std::vector<double> positions = want["positions"];
+  const std::vector<double> normals = want["normals"];
+  ASSERT_EQ(positions.size(), 3 * slots.size());
+  for (size_t v = 0; v < slots.size(); ++v) {
+    const Vector3d position = blocks.position(slots[v]).template cast<double>();
+    const Vector3d normal = blocks.normal(slots[v]).template cast<double>();
+    EXPECT_LT((position - Vector3d(&positions[3 * v])).norm(), kFloatTolerance);
+    EXPECT_LT((normal - Vector3d(&normals[3 * v])).norm(), kFloatTolerance);
+  }
+}
+
+TEST(StreamVectorsTest, FloatsAndQuantizedDecodeToWhatIsWritten) {
+  if (std::getenv("GELENK_WRITE_GOLDEN") != nullptr) {
+    std::ofstream(kPath) << Vectors().dump() << "\n";
+  }
+  const json vectors = ReadVectors();
+  VertexBlocks floats;
+  ASSERT_TRUE(DecodeFloats(BytesOf(vectors["float32"]["bytes"]), floats).ok());
+  ExpectVertices(vectors, vectors["float32"], floats);
+  QuantizedBlocks quantized;
+  ASSERT_TRUE(
+      DecodeQuantized(BytesOf(vectors["quantized"]["bytes"]), quantized).ok());
+  ExpectVertices(vectors, vectors["quantized"], quantized);
+}
+
+TEST(StreamVectorsTest, DifferencesDecodeToWhatIsWritten) {
+  const json vectors = ReadVectors();
+  DeltaDecoder decoder;
+  QuantizedBlocks blocks;
+  ASSERT_EQ(vectors["delta"].size(), static_cast<size_t>(kFrames));
+  for (const json& frame : vectors["delta"]) {
+    const std::string bytes = BytesOf(frame["bytes"]);
+    EXPECT_EQ(ReadHeader(bytes)->is_keyframe, frame["isKeyframe"]);
+    ASSERT_TRUE(decoder.Decode(bytes, blocks).ok());
+    EXPECT_EQ(BytesOf(blocks), BytesOf(frame["blocks"]));
+    // And that is still how they are encoded.
+    std::string key;
+    DeltaEncoder(1).Encode(blocks, key);
+    if (frame["isKeyframe"]) {
+      EXPECT_EQ(key.substr(kVertexStreamHeaderBytes),
+                bytes.substr(kVertexStreamHeaderBytes));
+    }
+  }
+}
+
+TEST(StreamVectorsTest, ControlPlanesDecodeToWhatIsWritten) {
+  const json vectors = ReadVectors()["controlPlanes"];
+  const Body body;
+  std::vector<BezierVolume> volumes;
+  const json& layout = vectors["layout"];
+  const std::vector<int> vertex_volumes = layout["vertexVolumes"];
+  const std::vector<int> part_vertices = layout["partVertices"];
+  const std::vector<double> at = layout["coordinates"];
+  for (const json& frame : vectors["frames"]) {
+    ASSERT_TRUE(
+        DecodeControlPlanes(body.skin->rig(), BytesOf(frame["bytes"]), volumes)
+            .ok());
+    const std::vector<double> want = frame["positions"];
+    for (size_t v = 0; v < vertex_volumes.size(); ++v) {
+      if (std::find(part_vertices.begin(), part_vertices.end(), v) !=
+          part_vertices.end()) {
+        continue;
+      }
+      const Vector3d got = volumes[vertex_volumes[v]].Position(
+          {at[3 * v], at[3 * v + 1], at[3 * v + 2]});
+      EXPECT_LT((got - Vector3d(&want[3 * v])).norm(), kFloatTolerance) << v;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gelenk
