@@ -54,14 +54,14 @@ void Retarget(GoalKind& kind, const GoalTarget& target) {
 absl::Status CheckAndNormalize(GoalTarget& target) {
   Violations violations;
   std::visit(Overloaded{[&](const Eigen::Vector3d& point) {
-                          CheckPoint("world_position", point, violations);
+                          CheckNumbers("world_position", point, violations);
                         },
                         [&](Eigen::Quaterniond& rotation) {
                           CheckRotation("world_rotation", rotation, violations);
                         },
                         [&](RigidTransform& pose) {
-                          CheckPoint("world_pose.translation", pose.translation,
-                                     violations);
+                          CheckNumbers("world_pose.translation",
+                                       pose.translation, violations);
                           CheckRotation("world_pose.rotation", pose.rotation,
                                         violations);
                         },

@@ -1,7 +1,6 @@
 #include "gelenk/ik/ik_problem.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/ik/goals/frame_rows.h"
 #include "gelenk/ik/goals/pose_rows.h"
@@ -148,10 +148,8 @@ void IkProblem::SetTarget(int goal_index, const GoalTarget& target) {
 }
 
 absl::Status IkProblem::CheckWeight(double weight) {
-  if (std::isfinite(weight) && weight >= 0) return absl::OkStatus();
   Violations violations;
-  violations.Add("weight",
-                 absl::StrCat("want a finite number >= 0, got ", weight));
+  CheckNotNegative("weight", weight, violations);
   return violations.ToStatus();
 }
 

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 
 namespace gelenk {
@@ -17,15 +18,7 @@ constexpr int kMaxSamples = 1000000;
 
 absl::Status Check(const Newton1dOptions& options) {
   Violations violations;
-  const auto positive = [&](absl::string_view field, double value) {
-    if (std::isfinite(value) && value > 0) return;
-    violations.Add(field,
-                   absl::StrCat("want a finite number > 0, got ", value));
-  };
-  if (!std::isfinite(options.start)) {
-    violations.Add("start",
-                   absl::StrCat("want a finite number, got ", options.start));
-  }
+  CheckNumber("start", options.start, violations);
   if (options.bracket && !(std::isfinite(options.bracket->lower) &&
                            std::isfinite(options.bracket->upper) &&
                            options.bracket->lower < options.bracket->upper)) {
@@ -44,8 +37,8 @@ absl::Status Check(const Newton1dOptions& options) {
     violations.Add("max_iterations",
                    absl::StrCat("want >= 0, got ", options.max_iterations));
   }
-  positive("tolerance", options.tolerance);
-  positive("difference_step", options.difference_step);
+  CheckPositive("tolerance", options.tolerance, violations);
+  CheckPositive("difference_step", options.difference_step, violations);
   return violations.ToStatus();
 }
 

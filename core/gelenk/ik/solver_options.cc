@@ -1,9 +1,8 @@
 #include "gelenk/ik/solver_options.h"
 
-#include <cmath>
-
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 
 namespace gelenk {
@@ -13,12 +12,6 @@ void CheckCount(absl::string_view field, int value, int most,
                 Violations& violations) {
   if (value >= 0 && value <= most) return;
   violations.Add(field, absl::StrFormat("want 0 to %d, got %d", most, value));
-}
-
-void CheckTolerance(absl::string_view field, double value,
-                    Violations& violations) {
-  if (std::isfinite(value) && value > 0) return;
-  violations.Add(field, absl::StrCat("want a finite number > 0, got ", value));
 }
 
 }  // namespace
@@ -37,12 +30,12 @@ absl::Status CheckSolverOptions(const SolverOptions& options) {
                                    "restarts, got %d",
                                    kMaxTotalIterations, total));
   }
-  CheckTolerance("position_tolerance_m", options.position_tolerance_m,
-                 violations);
-  CheckTolerance("rotation_tolerance_rad", options.rotation_tolerance_rad,
-                 violations);
+  CheckPositive("position_tolerance_m", options.position_tolerance_m,
+                violations);
+  CheckPositive("rotation_tolerance_rad", options.rotation_tolerance_rad,
+                violations);
   if (options.max_step) {
-    CheckTolerance("max_step", *options.max_step, violations);
+    CheckPositive("max_step", *options.max_step, violations);
   }
   if (options.time_limit && !(*options.time_limit > absl::ZeroDuration())) {
     violations.Add("time_limit",

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/math/rotation.h"
 
@@ -143,26 +144,19 @@ class Solver {
 
 absl::Status CheckTwoBone(const TwoBoneProblem& problem) {
   Violations violations;
-  const auto point = [&](absl::string_view field, const Vector3d& p) {
-    if (p.allFinite()) return;
-    violations.Add(field, absl::StrFormat("want finite numbers, got (%g, %g, "
-                                          "%g)",
-                                          p.x(), p.y(), p.z()));
-  };
-  point("world_root", problem.world_root);
-  point("world_mid", problem.world_mid);
-  point("world_tip", problem.world_tip);
-  point("world_target", problem.world_target);
-  if (problem.world_pole) point("world_pole", *problem.world_pole);
+  CheckNumbers("world_root", problem.world_root, violations);
+  CheckNumbers("world_mid", problem.world_mid, violations);
+  CheckNumbers("world_tip", problem.world_tip, violations);
+  CheckNumbers("world_target", problem.world_target, violations);
+  if (problem.world_pole) {
+    CheckNumbers("world_pole", *problem.world_pole, violations);
+  }
   if (!violations.empty()) return violations.ToStatus();
   const double upper = (problem.world_mid - problem.world_root).norm();
   const double lower = (problem.world_tip - problem.world_mid).norm();
   if (!(upper > 0)) violations.Add("world_mid", "the upper bone has no length");
   if (!(lower > 0)) violations.Add("world_tip", "the lower bone has no length");
-  if (!std::isfinite(problem.swivel_rad)) {
-    violations.Add("swivel_rad", absl::StrCat("want a finite number, got ",
-                                              problem.swivel_rad));
-  }
+  CheckNumber("swivel_rad", problem.swivel_rad, violations);
   if (!(problem.soft_distance_m >= 0 &&
         problem.soft_distance_m < upper + lower)) {
     violations.Add(

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 
 namespace gelenk {
@@ -182,29 +183,16 @@ class Solver {
   double nearest_change_ = 0;
 };
 
-void CheckLength(absl::string_view field, double value,
-                 Violations& violations) {
-  if (std::isfinite(value) && value > 0) return;
-  violations.Add(field, absl::StrCat("want a finite number > 0, got ", value));
-}
-
-void CheckPoint(absl::string_view field, const Vector2d& point,
-                Violations& violations) {
-  if (point.allFinite()) return;
-  violations.Add(field, absl::StrFormat("want finite numbers, got (%g, %g)",
-                                        point.x(), point.y()));
-}
-
 }  // namespace
 
 absl::Status CheckTwoLink(const TwoLinkProblem& problem) {
   Violations violations;
-  CheckPoint("base", problem.base, violations);
-  CheckLength("upper_length_m", problem.upper_length_m, violations);
-  CheckLength("lower_length_m", problem.lower_length_m, violations);
-  CheckPoint("target", problem.target, violations);
+  CheckNumbers("base", problem.base, violations);
+  CheckPositive("upper_length_m", problem.upper_length_m, violations);
+  CheckPositive("lower_length_m", problem.lower_length_m, violations);
+  CheckNumbers("target", problem.target, violations);
   if (problem.current_rad) {
-    CheckPoint("current_angles_rad", *problem.current_rad, violations);
+    CheckNumbers("current_angles_rad", *problem.current_rad, violations);
   }
   for (int k = 0; k < 2; ++k) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();

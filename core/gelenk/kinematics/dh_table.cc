@@ -6,6 +6,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/math/rotation.h"
@@ -35,12 +36,6 @@ RigidTransform AboutZ(const DhRow& row) {
 bool FitsARow(JointType type) {
   return type == JointType::kRevolute || type == JointType::kPrismatic ||
          type == JointType::kFixed;
-}
-
-void CheckNumber(absl::string_view field, double value,
-                 Violations& violations) {
-  if (std::isfinite(value)) return;
-  violations.Add(field, absl::StrCat("want a finite number, got ", value));
 }
 
 // A line in space; `direction` is unit.

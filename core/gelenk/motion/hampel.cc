@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/motion/clip_frames.h"
@@ -54,14 +55,10 @@ absl::Status Check(const HampelOptions& options) {
     violations.Add("reach", absl::StrFormat("want 1 to %d, got %d",
                                             kMaxHampelReach, options.reach));
   }
-  const auto check = [&](const char* field, double value) {
-    if (std::isfinite(value) && value >= 0) return;
-    violations.Add(field,
-                   absl::StrCat("want a finite number >= 0, got ", value));
-  };
-  check("sigmas", options.sigmas);
-  check("rotation_floor_rad", options.rotation_floor_rad);
-  check("number_floor", options.number_floor);
+  CheckNotNegative("sigmas", options.sigmas, violations);
+  CheckNotNegative("rotation_floor_rad", options.rotation_floor_rad,
+                   violations);
+  CheckNotNegative("number_floor", options.number_floor, violations);
   return violations.ToStatus();
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 
 namespace gelenk {
@@ -29,18 +30,10 @@ double SmoothStep(double u) {
 
 absl::Status Check(const Skeleton& skeleton, LiveClockOptions& options) {
   Violations violations;
-  const auto check = [&](const char* field, double value, bool zero_is_good) {
-    if (std::isfinite(value) && (value > 0 || (zero_is_good && value == 0))) {
-      return;
-    }
-    violations.Add(
-        field, absl::StrCat("want a finite number ",
-                            zero_is_good ? ">= 0" : "> 0", ", got ", value));
-  };
-  check("delay_s", options.delay_s, true);
-  check("window_s", options.window_s, false);
-  check("max_extrapolation_s", options.max_extrapolation_s, false);
-  check("ease_s", options.ease_s, false);
+  CheckNotNegative("delay_s", options.delay_s, violations);
+  CheckPositive("window_s", options.window_s, violations);
+  CheckPositive("max_extrapolation_s", options.max_extrapolation_s, violations);
+  CheckPositive("ease_s", options.ease_s, violations);
   if (options.capacity < kMinCapacity || options.capacity > kMaxCapacity) {
     violations.Add("capacity",
                    absl::StrCat("want ", kMinCapacity, " to ", kMaxCapacity,

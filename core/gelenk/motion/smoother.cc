@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 
 namespace gelenk {
@@ -19,18 +19,10 @@ double GainOf(double cutoff_hz, double dt_s) {
 
 absl::Status Check(const SmootherOptions& options) {
   Violations violations;
-  const auto check = [&](const char* field, double value, bool zero_is_good) {
-    if (std::isfinite(value) && (value > 0 || (zero_is_good && value == 0))) {
-      return;
-    }
-    violations.Add(
-        field, absl::StrCat("want a finite number ",
-                            zero_is_good ? ">= 0" : "> 0", ", got ", value));
-  };
-  check("time_constant_s", options.time_constant_s, true);
-  check("min_cutoff_hz", options.min_cutoff_hz, false);
-  check("speed_coefficient", options.speed_coefficient, true);
-  check("speed_cutoff_hz", options.speed_cutoff_hz, false);
+  CheckNotNegative("time_constant_s", options.time_constant_s, violations);
+  CheckPositive("min_cutoff_hz", options.min_cutoff_hz, violations);
+  CheckNotNegative("speed_coefficient", options.speed_coefficient, violations);
+  CheckPositive("speed_cutoff_hz", options.speed_cutoff_hz, violations);
   if (options.hampel) violations.AddStatus("hampel", Check(*options.hampel));
   return violations.ToStatus();
 }

@@ -9,6 +9,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/math/rotation.h"
 
 namespace gelenk {
@@ -27,30 +28,11 @@ void CheckUnit(absl::string_view field, Eigen::Vector3d& direction,
   if (std::abs(norm - 1) > kUnitExact) direction /= norm;
 }
 
-void CheckFinite(absl::string_view field, double value,
-                 Violations& violations) {
-  if (std::isfinite(value)) return;
-  violations.Add(field, absl::StrCat("want a finite number, got ", value));
-}
-
-void CheckFinite(absl::string_view field, const Eigen::Vector3d& vector,
-                 Violations& violations) {
-  if (vector.allFinite()) return;
-  violations.Add(field,
-                 absl::StrCat("want finite numbers, got ", Text(vector)));
-}
-
 void CheckSize(absl::string_view field, size_t size, int want,
                Violations& violations) {
   if (size == 0 || size == static_cast<size_t>(want)) return;
   violations.Add(
       field, absl::StrFormat("want %d numbers or none, got %d", want, size));
-}
-
-void CheckNotNegative(absl::string_view field, double value,
-                      Violations& violations) {
-  if (std::isfinite(value) && value >= 0) return;
-  violations.Add(field, absl::StrCat("want a finite number >= 0, got ", value));
 }
 
 // One number per degree of freedom, or none.
@@ -89,8 +71,11 @@ void CheckBox(absl::string_view field, const Joint& joint,
   for (size_t i = 0; i < limits.lower.size(); ++i) {
     const double lower = limits.lower[i];
     const double upper = limits.upper[i];
-    // Infinities mean "unlimited on this side"; NaN fails the comparison.
-    if (lower <= upper && lower < INFINITY && upper > -INFINITY) continue;
+    // No limit on its side is what is beyond the numbers that are computed
+    // with; NaN fails the comparison.
+    if (lower <= upper && lower <= kLargestNumber && upper >= -kLargestNumber) {
+      continue;
+    }
     violations.Add(absl::StrCat(field, ".limits.lower[", i, "]"),
                    absl::StrFormat("joint %s: lower limit %g > upper limit %g",
                                    QuotedId(joint.id), lower, upper));
@@ -139,9 +124,9 @@ void CheckMimic(absl::string_view field, const Joint& joint,
                    absl::StrCat("a ", JointTypeName(joint.type),
                                 " joint cannot follow another"));
   }
-  CheckFinite(absl::StrCat(field, ".mimic.multiplier"), joint.mimic->multiplier,
+  CheckNumber(absl::StrCat(field, ".mimic.multiplier"), joint.mimic->multiplier,
               violations);
-  CheckFinite(absl::StrCat(field, ".mimic.offset"), joint.mimic->offset,
+  CheckNumber(absl::StrCat(field, ".mimic.offset"), joint.mimic->offset,
               violations);
 }
 
@@ -173,8 +158,8 @@ void CheckId(absl::string_view field, absl::string_view id,
 
 void CheckAndNormalize(absl::string_view field, RigidTransform& transform,
                        Violations& violations) {
-  CheckFinite(absl::StrCat(field, ".translation"), transform.translation,
-              violations);
+  CheckNumbers(absl::StrCat(field, ".translation"), transform.translation,
+               violations);
   if (!NormalizeNearUnit(transform.rotation.coeffs().data())) {
     const Eigen::Quaterniond& q = transform.rotation;
     violations.Add(
@@ -208,8 +193,8 @@ void CheckAndNormalize(absl::string_view field, Joint& joint,
                    violations);
   CheckNotNegative(absl::StrCat(field, ".link_mass_kg"), joint.link_mass_kg,
                    violations);
-  CheckFinite(absl::StrCat(field, ".link_center_of_mass"),
-              joint.link_center_of_mass, violations);
+  CheckNumbers(absl::StrCat(field, ".link_center_of_mass"),
+               joint.link_center_of_mass, violations);
 }
 
 }  // namespace gelenk

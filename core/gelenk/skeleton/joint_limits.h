@@ -11,8 +11,8 @@ namespace gelenk {
 
 struct JointLimits {
   // rad or m, per stored coordinate of revolute, prismatic and planar joints,
-  // the three translations of a free joint. Empty means unlimited;
-  // lower == upper freezes a coordinate.
+  // the three translations of a free joint. Empty, infinite or beyond
+  // kLargestNumber means unlimited; lower == upper freezes a coordinate.
   std::vector<double> lower;
   std::vector<double> upper;
   // Spherical and free: largest angle between the joint's axis and its rest

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 
 namespace gelenk {
@@ -22,15 +23,10 @@ absl::Status Check(const PlanarChain& chain) {
     violations.Add("link_lengths", "want at least one");
   }
   for (size_t i = 0; i < chain.link_lengths_m.size(); ++i) {
-    const double length = chain.link_lengths_m[i];
-    if (std::isfinite(length) && length > 0) continue;
-    violations.Add(absl::StrCat("link_lengths[", i, "]"),
-                   absl::StrCat("want a finite number > 0, got ", length));
+    CheckPositive(absl::StrCat("link_lengths[", i, "]"),
+                  chain.link_lengths_m[i], violations);
   }
-  if (!chain.base.allFinite()) {
-    violations.Add("base", absl::StrFormat("want finite numbers, got (%g, %g)",
-                                           chain.base.x(), chain.base.y()));
-  }
+  CheckNumbers("base", chain.base, violations);
   if (!chain.limits.empty() &&
       chain.limits.size() != chain.link_lengths_m.size()) {
     violations.Add("limits", absl::StrFormat("want none or %d, got %d",

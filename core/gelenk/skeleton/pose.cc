@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/math/rotation.h"
 
 namespace gelenk {
@@ -71,9 +72,8 @@ void CheckJointPositions(JointType type, int offset, VectorView positions,
                          Violations& violations) {
   const int count = PositionCount(type);
   for (int i = offset; i < offset + count; ++i) {
-    if (std::isfinite(positions[i])) continue;
-    violations.Add(absl::StrCat("positions[", i, "]"),
-                   absl::StrCat("want a finite number, got ", positions[i]));
+    if (IsUsable(positions[i])) continue;
+    CheckNumber(absl::StrCat("positions[", i, "]"), positions[i], violations);
   }
   const int at = offset + QuaternionStart(type);
   if (at < offset || !positions.segment<4>(at).allFinite()) return;

@@ -1,18 +1,25 @@
 #include "gelenk/skeleton/position_bounds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "gelenk/base/number_check.h"
 #include "gelenk/skeleton/skeleton.h"
 
 namespace gelenk {
 namespace {
 
+// What no position gets to is no limit.
+double AsBound(double limit) {
+  return IsUsable(limit) ? limit : std::copysign(HUGE_VAL, limit);
+}
+
 void SetOwnLimits(const Joint& joint, int offset, PositionBounds& bounds) {
   for (size_t k = 0; k < joint.limits.lower.size(); ++k) {
-    bounds.lower[offset + k] = joint.limits.lower[k];
-    bounds.upper[offset + k] = joint.limits.upper[k];
+    bounds.lower[offset + k] = AsBound(joint.limits.lower[k]);
+    bounds.upper[offset + k] = AsBound(joint.limits.upper[k]);
   }
 }
 
@@ -24,9 +31,13 @@ void FoldMimicLimits(const Joint& follower, int offset,
   double lower = (follower.limits.lower[0] - mimic.offset) / mimic.multiplier;
   double upper = (follower.limits.upper[0] - mimic.offset) / mimic.multiplier;
   if (lower > upper) std::swap(lower, upper);
-  lower = std::max(lower, bounds.lower[offset]);
-  upper = std::min(upper, bounds.upper[offset]);
-  if (lower > upper) return;
+  lower = std::max(AsBound(lower), bounds.lower[offset]);
+  upper = std::min(AsBound(upper), bounds.upper[offset]);
+  // Also false where they leave nothing but what no position gets to.
+  if (!(lower <= upper && lower <= kLargestNumber &&
+        upper >= -kLargestNumber)) {
+    return;
+  }
   bounds.lower[offset] = lower;
   bounds.upper[offset] = upper;
 }

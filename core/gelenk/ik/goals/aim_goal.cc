@@ -18,7 +18,7 @@ constexpr double kAimBlur_m = 1e-3;
 
 void CheckAndNormalize(AimGoal& goal, Violations& violations) {
   CheckDirection("axis", goal.axis, violations);
-  CheckPoint("world_point", goal.world_point, violations);
+  CheckNumbers("world_point", goal.world_point, violations);
 }
 
 void CheckOn(const Skeleton& skeleton, AimGoal& goal, Violations& violations) {

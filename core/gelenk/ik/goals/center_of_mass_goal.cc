@@ -7,7 +7,7 @@
 namespace gelenk {
 
 void CheckAndNormalize(CenterOfMassGoal& goal, Violations& violations) {
-  CheckPoint("world_position", goal.world_position, violations);
+  CheckNumbers("world_position", goal.world_position, violations);
 }
 
 EffectorTask TaskOf(const Skeleton&, const CenterOfMassGoal&) {

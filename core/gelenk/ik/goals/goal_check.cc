@@ -9,12 +9,6 @@
 
 namespace gelenk {
 
-void CheckPoint(absl::string_view field, const Eigen::Vector3d& point,
-                Violations& violations) {
-  if (point.allFinite()) return;
-  violations.Add(field, absl::StrCat("want finite numbers, got ", Text(point)));
-}
-
 void CheckRotation(absl::string_view field, Eigen::Quaterniond& rotation,
                    Violations& violations) {
   if (NormalizeNearUnit(rotation.coeffs().data())) return;
@@ -33,12 +27,6 @@ void CheckDirection(absl::string_view field, Eigen::Vector3d& direction,
     return;
   }
   if (std::abs(length - 1) > kUnitExact) direction /= length;
-}
-
-void CheckNotNegative(absl::string_view field, double value,
-                      Violations& violations) {
-  if (std::isfinite(value) && value >= 0) return;
-  violations.Add(field, absl::StrCat("want a finite number >= 0, got ", value));
 }
 
 void CheckEffector(const Skeleton& skeleton, absl::string_view field,

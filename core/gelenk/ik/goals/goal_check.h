@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "absl/strings/string_view.h"
+#include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/skeleton/skeleton.h"
 
@@ -16,9 +17,6 @@ namespace gelenk {
 // Shorter directions have none that means anything.
 inline constexpr double kLeastDirection = 1e-9;
 
-void CheckPoint(absl::string_view field, const Eigen::Vector3d& point,
-                Violations& violations);
-
 // Makes near-unit quaternions unit; see NormalizeNearUnit.
 void CheckRotation(absl::string_view field, Eigen::Quaterniond& rotation,
                    Violations& violations);
@@ -26,10 +24,6 @@ void CheckRotation(absl::string_view field, Eigen::Quaterniond& rotation,
 // Any length but zero; normalised.
 void CheckDirection(absl::string_view field, Eigen::Vector3d& direction,
                     Violations& violations);
-
-// A weight or a scale.
-void CheckNotNegative(absl::string_view field, double value,
-                      Violations& violations);
 
 // An end effector or a joint of that id must be there.
 void CheckEffector(const Skeleton& skeleton, absl::string_view field,

@@ -1,8 +1,5 @@
 #include "gelenk/ik/goals/half_space_goal.h"
 
-#include <cmath>
-
-#include "absl/strings/str_cat.h"
 #include "gelenk/ik/goals/frame_rows.h"
 #include "gelenk/ik/goals/goal_check.h"
 #include "gelenk/ik/goals/pose_rows.h"
@@ -11,9 +8,7 @@ namespace gelenk {
 
 void CheckAndNormalize(Plane& plane, Violations& violations) {
   CheckDirection("world_normal", plane.world_normal, violations);
-  if (std::isfinite(plane.offset_m)) return;
-  violations.Add("offset_m",
-                 absl::StrCat("want a finite number, got ", plane.offset_m));
+  CheckNumber("offset_m", plane.offset_m, violations);
 }
 
 void CheckAndNormalize(HalfSpaceGoal& goal, Violations& violations) {

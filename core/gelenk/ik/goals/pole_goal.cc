@@ -142,7 +142,7 @@ void StoreNudge(const Limb& limb, kernel::GoalRows& rows) {
 }  // namespace
 
 void CheckAndNormalize(PoleGoal& goal, Violations& violations) {
-  CheckPoint("world_point", goal.world_point, violations);
+  CheckNumbers("world_point", goal.world_point, violations);
 }
 
 void CheckOn(const Skeleton& skeleton, PoleGoal& goal, Violations& violations) {

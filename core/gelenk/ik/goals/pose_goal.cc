@@ -7,7 +7,8 @@
 namespace gelenk {
 
 void CheckAndNormalize(PoseGoal& goal, Violations& violations) {
-  CheckPoint("world_pose.translation", goal.world_pose.translation, violations);
+  CheckNumbers("world_pose.translation", goal.world_pose.translation,
+               violations);
   CheckRotation("world_pose.rotation", goal.world_pose.rotation, violations);
   CheckNotNegative("rotation_scale_m_per_rad", goal.rotation_scale_m_per_rad,
                    violations);

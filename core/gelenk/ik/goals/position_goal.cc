@@ -7,7 +7,7 @@
 namespace gelenk {
 
 void CheckAndNormalize(PositionGoal& goal, Violations& violations) {
-  CheckPoint("world_position", goal.world_position, violations);
+  CheckNumbers("world_position", goal.world_position, violations);
 }
 
 void CheckOn(const Skeleton& skeleton, PositionGoal& goal,

@@ -8,8 +8,8 @@ namespace gelenk {
 
 void CheckAndNormalize(RelativeGoal& goal, Violations& violations) {
   RigidTransform& pose = goal.reference_from_end_effector;
-  CheckPoint("reference_from_end_effector.translation", pose.translation,
-             violations);
+  CheckNumbers("reference_from_end_effector.translation", pose.translation,
+               violations);
   CheckRotation("reference_from_end_effector.rotation", pose.rotation,
                 violations);
   CheckNotNegative("rotation_scale_m_per_rad", goal.rotation_scale_m_per_rad,
