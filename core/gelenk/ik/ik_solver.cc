@@ -1,7 +1,5 @@
 #include "gelenk/ik/ik_solver.h"
 
-#include "absl/strings/str_cat.h"
-#include "gelenk/base/violations.h"
 #include "gelenk/ik/half_space_overshoot.h"
 #include "gelenk/ik/solver_method.h"
 #include "gelenk/ik/stop_condition.h"
@@ -48,12 +46,9 @@ absl::Status IkSolver::Check(const IkProblem& problem,
     case SolverMethod::kFabrik:
       return FabrikSolver::Check(problem);
     case SolverMethod::kTwoLink:
-      break;
+      return TwoLinkSolver::Check(problem);
   }
-  Violations violations;
-  violations.Add("method",
-                 absl::StrCat(SolverMethodName(method), " is not offered"));
-  return violations.ToStatus();
+  return absl::OkStatus();
 }
 
 void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
@@ -74,6 +69,8 @@ void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
       return pseudo_inverse_.Solve(problem, options, positions, report, stop);
     case SolverMethod::kMinimalChange:
       return minimal_change_.Solve(problem, options, positions, report, stop);
+    case SolverMethod::kTwoLink:
+      return two_link_.Solve(problem, options, positions, report);
     case SolverMethod::kFabrik:
       return fabrik_.Solve(problem, options, positions, report, stop);
     default:

@@ -23,6 +23,7 @@
 #include "gelenk/ik/solver_options.h"
 #include "gelenk/ik/step_bounds.h"
 #include "gelenk/ik/stop_condition.h"
+#include "gelenk/ik/two_link_solver.h"
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
@@ -69,6 +70,7 @@ class IkSolver {
   NewtonSolver pseudo_inverse_{SolverMethod::kPseudoInverse};
   NewtonSolver minimal_change_{SolverMethod::kMinimalChange};
   FabrikSolver fabrik_;
+  TwoLinkSolver two_link_;
 };
 
 }  // namespace gelenk

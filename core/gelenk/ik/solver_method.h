@@ -10,7 +10,7 @@ namespace gelenk {
 enum class SolverMethod {
   // IkSolver picks.
   kAuto,
-  // Closed form: two links in the plane.
+  // Closed form: two links in a plane.
   kTwoLink,
   // Newton with the inverse Jacobian: as many equations as unknowns.
   kNewton,
