@@ -60,6 +60,11 @@ absl::Status CheckOptions(const ServerOptions& options) {
   CheckAtLeast("max_clips", limits.max_clips, 1, violations);
   CheckAtLeast("max_clip_numbers", limits.max_clip_numbers, 1, violations);
   CheckAtLeast("max_clip_revisions", limits.max_clip_revisions, 1, violations);
+  CheckAtLeast("max_skins", limits.max_skins, 1, violations);
+  CheckAtLeast("max_skin_vertices", limits.max_skin_vertices, 1, violations);
+  CheckAtLeast("max_skin_triangles", limits.max_skin_triangles, 1, violations);
+  // An edit adds one before an older one goes.
+  CheckAtLeast("max_skin_revisions", limits.max_skin_revisions, 2, violations);
   CheckAtLeast("max_message_bytes", limits.max_message_bytes, 1024, violations);
   CheckAtLeast("max_import_bytes", limits.max_import_bytes, 1, violations);
   CheckAtLeast("max_imports", limits.max_imports, 1, violations);

@@ -28,6 +28,14 @@ struct Limits {
   int64_t max_clip_numbers = int64_t{1} << 25;
   // Of one clip: what can be undone. Each is as large as the clip.
   int max_clip_revisions = 100;
+  int max_skins = 1000;
+  // All skins with all their revisions; one revision of 10,000 vertices in
+  // layered volumes is about 4 MB.
+  size_t max_skin_bytes = size_t{512} << 20;
+  // One skin: a scanned body, thinned out; and revisions of it that are kept.
+  int max_skin_vertices = 1 << 18;
+  int max_skin_triangles = 1 << 19;
+  int max_skin_revisions = 16;
   // gRPC's own default; larger things come in pieces.
   int max_message_bytes = 4 << 20;
   // One imported file; an hour of motion capture is about 200 MB.

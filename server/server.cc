@@ -22,6 +22,7 @@
 #include "server/rpc/motion_service.h"
 #include "server/rpc/service_state.h"
 #include "server/rpc/session_service.h"
+#include "server/rpc/skin_service.h"
 
 namespace gelenk::server {
 namespace {
@@ -102,6 +103,7 @@ class GrpcServer final : public Server {
     builder.RegisterService(&kinematics_);
     builder.RegisterService(&sessions_);
     builder.RegisterService(&motion_);
+    builder.RegisterService(&skins_);
     builder.RegisterService(&health_);
     for (int i = 0; i < options.io_threads; ++i) {
       threads_.push_back(std::make_unique<IoThread>(
@@ -122,6 +124,7 @@ class GrpcServer final : public Server {
       ServeKinematics(&kinematics_, &state_, thread.get());
       ServeSessions(&sessions_, &state_, thread.get());
       ServeMotion(&motion_, &state_, thread.get());
+      ServeSkins(&skins_, &state_, thread.get());
       ServeHealth(&health_, &state_, thread.get());
       thread->Start();
     }
@@ -160,6 +163,7 @@ class GrpcServer final : public Server {
   v1::KinematicsService::AsyncService kinematics_;
   v1::SessionService::AsyncService sessions_;
   v1::MotionService::AsyncService motion_;
+  v1::SkinService::AsyncService skins_;
   grpc::health::v1::Health::AsyncService health_;
   std::vector<std::unique_ptr<IoThread>> threads_;
   std::unique_ptr<grpc::Server> server_;

@@ -46,6 +46,15 @@ void AddLimits(CLI::App& app, Limits& limits) {
             "One clip: frames times the numbers of a pose");
   AddNumber(app, "--max-clip-revisions", limits.max_clip_revisions,
             "Revisions of a clip that are kept");
+  AddNumber(app, "--max-skins", limits.max_skins, "Skins at a time");
+  AddNumber(app, "--max-skin-bytes", limits.max_skin_bytes,
+            "All skins together, bytes");
+  AddNumber(app, "--max-skin-vertices", limits.max_skin_vertices,
+            "Vertices of one skin");
+  AddNumber(app, "--max-skin-triangles", limits.max_skin_triangles,
+            "Triangles of one skin");
+  AddNumber(app, "--max-skin-revisions", limits.max_skin_revisions,
+            "Revisions of one skin that are kept");
   AddNumber(app, "--max-message-bytes", limits.max_message_bytes,
             "One message, bytes");
   AddNumber(app, "--max-import-bytes", limits.max_import_bytes,

@@ -14,7 +14,7 @@
 namespace gelenk::server {
 
 // INVALID_ARGUMENT naming `field` when `name` is malformed, NOT_FOUND when
-// there is none of that name.
+// there is none of that name, or when it has expired.
 inline absl::StatusOr<std::shared_ptr<Session>> FindSession(
     const ServiceState& state, absl::string_view field,
     const std::string& name) {

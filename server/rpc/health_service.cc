@@ -17,7 +17,8 @@ using Service = health::Health::AsyncService;
 bool IsKnown(const std::string& service) {
   return service.empty() || service == "gelenk.v1.SessionService" ||
          service == "gelenk.v1.KinematicsService" ||
-         service == "gelenk.v1.MotionService";
+         service == "gelenk.v1.MotionService" ||
+         service == "gelenk.v1.SkinService";
 }
 
 health::HealthCheckResponse::ServingStatus StatusNow(

@@ -94,8 +94,11 @@ absl::Status DeleteSkeleton(ServiceState& state,
   if (!status.ok()) return status;
   status = state.clips.RemoveUnused(kDefaultTenant, request.name(), [&] {
     return state.sessions.RemoveUnused(
-        kDefaultTenant, request.name(), absl::Now(),
-        [&] { return state.skeletons.Delete(kDefaultTenant, request.name()); });
+        kDefaultTenant, request.name(), absl::Now(), [&] {
+          return state.skins.RemoveUnused(kDefaultTenant, request.name(), [&] {
+            return state.skeletons.Delete(kDefaultTenant, request.name());
+          });
+        });
   });
   if (request.allow_missing() && absl::IsNotFound(status)) {
     return absl::OkStatus();

@@ -11,6 +11,7 @@
 #include "server/session/session_registry.h"
 #include "server/store/clip_store.h"
 #include "server/store/skeleton_store.h"
+#include "server/store/skin_store.h"
 
 namespace gelenk::server {
 
@@ -26,6 +27,10 @@ struct ServiceState {
                server_options.limits.max_clip_bytes,
                server_options.limits.max_clip_revisions},
               skeletons, random),
+        skins({server_options.limits.max_skins,
+               server_options.limits.max_skin_bytes,
+               server_options.limits.max_skin_revisions},
+              random),
         workers(server_options.worker_threads,
                 server_options.limits.max_waiting_calls,
                 server_options.instruction_set) {}
@@ -34,6 +39,7 @@ struct ServiceState {
   SkeletonStore skeletons;
   SessionRegistry sessions;
   ClipStore clips;
+  SkinStore skins;
 
   // SIGTERM was seen: no new sessions, streams are asked to leave.
   std::atomic<bool> draining{false};

@@ -1,23 +1,13 @@
 #include "server/rpc/watch_session_call.h"
 
-#include <algorithm>
-
 #include "absl/time/clock.h"
-#include "convert/duration.h"
 #include "convert/pose.h"
+#include "server/rpc/find_session.h"
 #include "server/rpc/session_message.h"
 #include "server/rpc/status.h"
+#include "server/rpc/watch_interval.h"
 
 namespace gelenk::server {
-namespace {
-
-// One frame of a 60 Hz display.
-constexpr absl::Duration kDefaultInterval = absl::Milliseconds(16);
-// No viewer draws faster, and the look costs the I/O thread.
-constexpr absl::Duration kLeastInterval = absl::Milliseconds(2);
-constexpr absl::Duration kMostInterval = absl::Seconds(1);
-
-}  // namespace
 
 void WatchSessionCall::Start(v1::SessionService::AsyncService* service,
                              ServiceState* state, IoThread* thread) {
@@ -53,19 +43,11 @@ absl::Status WatchSessionCall::Open() {
   if (!place_->granted()) {
     return absl::ResourceExhaustedError("too many streams are open");
   }
-  if (absl::Status status =
-          CheckResourceName("name", kSessions, request_.name());
-      !status.ok()) {
-    return status;
-  }
   absl::StatusOr<std::shared_ptr<Session>> session =
-      state_->sessions.Find(kDefaultTenant, request_.name(), absl::Now());
+      FindSession(*state_, "name", request_.name());
   if (!session.ok()) return session.status();
   session_ = *session;
-  interval_ = request_.has_min_interval()
-                  ? convert::FromProto(request_.min_interval())
-                  : kDefaultInterval;
-  interval_ = std::clamp(interval_, kLeastInterval, kMostInterval);
+  interval_ = WatchInterval(request_);
   return absl::OkStatus();
 }
 

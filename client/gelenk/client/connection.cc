@@ -42,11 +42,7 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& target,
 }  // namespace
 
 Connection::Connection(const std::string& target, ConnectionOptions options)
-    : options_(std::move(options)),
-      channel_(MakeChannel(target, options_)),
-      kinematics_(v1::KinematicsService::NewStub(channel_)),
-      sessions_(v1::SessionService::NewStub(channel_)),
-      motion_(v1::MotionService::NewStub(channel_)) {}
+    : options_(std::move(options)), channel_(MakeChannel(target, options_)) {}
 
 absl::Status Connection::WaitForReady(absl::Duration timeout) {
   const auto deadline =

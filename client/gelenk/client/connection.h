@@ -15,9 +15,13 @@
 #include <grpcpp/client_context.h>
 #include <grpcpp/security/credentials.h>
 
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <typeindex>
 
+#include "absl/base/thread_annotations.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
@@ -58,9 +62,17 @@ class Connection {
   // DEADLINE_EXCEEDED when there is no connection after `timeout`.
   absl::Status WaitForReady(absl::Duration timeout);
 
-  v1::KinematicsService::Stub& kinematics() { return *kinematics_; }
-  v1::SessionService::Stub& sessions() { return *sessions_; }
-  v1::MotionService::Stub& motion() { return *motion_; }
+  // The stub of a service, made at its first use: of one that is not named
+  // here, stub<v1::SkinService::Stub>().
+  template <class Stub>
+  Stub& stub();
+  v1::KinematicsService::Stub& kinematics() {
+    return stub<v1::KinematicsService::Stub>();
+  }
+  v1::SessionService::Stub& sessions() {
+    return stub<v1::SessionService::Stub>();
+  }
+  v1::MotionService::Stub& motion() { return stub<v1::MotionService::Stub>(); }
 
   // One unary call of any service, given as a pointer to the stub's method.
   template <class Stub, class Request, class Response>
@@ -73,23 +85,24 @@ class Connection {
   void Prepare(const CallOptions& options, grpc::ClientContext& context) const;
 
  private:
-  v1::KinematicsService::Stub& StubOf(v1::KinematicsService::Stub*) {
-    return *kinematics_;
-  }
-  v1::SessionService::Stub& StubOf(v1::SessionService::Stub*) {
-    return *sessions_;
-  }
-  v1::MotionService::Stub& StubOf(v1::MotionService::Stub*) { return *motion_; }
-
   const ConnectionOptions options_;
   const std::shared_ptr<grpc::Channel> channel_;
-  const std::unique_ptr<v1::KinematicsService::Stub> kinematics_;
-  const std::unique_ptr<v1::SessionService::Stub> sessions_;
-  const std::unique_ptr<v1::MotionService::Stub> motion_;
+  std::mutex mutex_;
+  // By the stub's type.
+  std::map<std::type_index, std::shared_ptr<void>> stubs_
+      ABSL_GUARDED_BY(mutex_);
 };
 
 // Sets the metadata that keeps a session on its server; an empty key sets none.
 void SetAffinity(const std::string& affinity_key, grpc::ClientContext& context);
+
+template <class Stub>
+Stub& Connection::stub() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  std::shared_ptr<void>& stub = stubs_[std::type_index(typeid(Stub))];
+  if (stub == nullptr) stub = std::make_shared<Stub>(channel_);
+  return *static_cast<Stub*>(stub.get());
+}
 
 template <class Stub, class Request, class Response>
 absl::StatusOr<Response> Connection::Call(
@@ -99,9 +112,9 @@ absl::StatusOr<Response> Connection::Call(
   grpc::ClientContext context;
   Prepare(options, context);
   const Cancellation::Watch watch(options.cancellation, context);
-  Stub& stub = StubOf(static_cast<Stub*>(nullptr));
   Response response;
-  const grpc::Status status = (stub.*method)(&context, request, &response);
+  const grpc::Status status =
+      (stub<Stub>().*method)(&context, request, &response);
   if (!status.ok()) return FromGrpc(status);
   return response;
 }

@@ -1,13 +1,10 @@
 #include "gelenk/import/gltf_writer.h"
 
-#include <cstdint>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "absl/strings/escaping.h"
-#include "absl/strings/str_cat.h"
+#include "gelenk/import/gltf_file.h"
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/motion/clip_frames.h"
@@ -16,22 +13,6 @@ namespace gelenk {
 namespace {
 
 using nlohmann::json;
-
-constexpr int kFloat = 5126;
-// Chunks of a GLB and accessors begin at multiples of this.
-constexpr size_t kAlignment = 4;
-
-json Numbers(const Eigen::VectorXd& vector) {
-  json array = json::array();
-  for (double number : vector) array.push_back(number);
-  return array;
-}
-
-void AppendLittleEndian(uint32_t number, std::string& bytes) {
-  for (int i = 0; i < 4; ++i) {
-    bytes.push_back(static_cast<char>(number >> (8 * i) & 0xff));
-  }
-}
 
 class GltfWriter {
  public:
@@ -47,16 +28,14 @@ class GltfWriter {
   bool IsDirect(int joint) const;
   void AddTrack(const JointTrack& track);
   absl::Status AddSampled(const std::vector<int>& joints);
-  // Of a column per element.
-  int AddAccessor(const Eigen::MatrixXd& values, bool with_range);
   void AddChannel(int node, const char* path, int input, int output,
                   Interpolation interpolation);
 
   const MotionClip& clip_;
   const Skeleton& skeleton_;
-  json root_;
+  GltfFile file_;
+  json& root_ = file_.root;
   json animation_ = {{"channels", json::array()}, {"samplers", json::array()}};
-  std::string buffer_;
 };
 
 void GltfWriter::AddNodes() {
@@ -69,8 +48,8 @@ void GltfWriter::AddNodes() {
     const RigidTransform local =
         joint.parent_from_joint * JointMotion(skeleton_, i, base);
     nodes.push_back({{"name", joint.id},
-                     {"translation", Numbers(local.translation)},
-                     {"rotation", Numbers(local.rotation.coeffs())}});
+                     {"translation", GltfNumbers(local.translation)},
+                     {"rotation", GltfNumbers(local.rotation.coeffs())}});
     joints.push_back(i);
     if (skeleton_.span(i).parent >= 0) {
       children[skeleton_.span(i).parent].push_back(i);
@@ -80,8 +59,8 @@ void GltfWriter::AddNodes() {
     const RigidTransform& local = effector.joint_from_end_effector;
     children[skeleton_.FindJoint(effector.joint_id)].push_back(nodes.size());
     nodes.push_back({{"name", effector.id},
-                     {"translation", Numbers(local.translation)},
-                     {"rotation", Numbers(local.rotation.coeffs())}});
+                     {"translation", GltfNumbers(local.translation)},
+                     {"rotation", GltfNumbers(local.rotation.coeffs())}});
   }
   for (size_t i = 0; i < children.size(); ++i) {
     if (!children[i].empty()) nodes[i]["children"] = std::move(children[i]);
@@ -90,25 +69,6 @@ void GltfWriter::AddNodes() {
   root_["scene"] = 0;
   root_["skins"] =
       json::array({{{"joints", std::move(joints)}, {"skeleton", 0}}});
-}
-
-int GltfWriter::AddAccessor(const Eigen::MatrixXd& values, bool with_range) {
-  const char* const types[] = {"", "SCALAR", "", "VEC3", "VEC4"};
-  const Eigen::MatrixXf singles = values.cast<float>();
-  const size_t size = singles.size() * sizeof(float);
-  json accessor = {{"bufferView", root_["bufferViews"].size()},
-                   {"componentType", kFloat},
-                   {"count", singles.cols()},
-                   {"type", types[singles.rows()]}};
-  if (with_range) {
-    accessor["min"] = json::array({singles.minCoeff()});
-    accessor["max"] = json::array({singles.maxCoeff()});
-  }
-  root_["bufferViews"].push_back(
-      {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", size}});
-  root_["accessors"].push_back(std::move(accessor));
-  buffer_.append(reinterpret_cast<const char*>(singles.data()), size);
-  return static_cast<int>(root_["accessors"].size()) - 1;
 }
 
 void GltfWriter::AddChannel(int node, const char* path, int input, int output,
@@ -156,9 +116,10 @@ void GltfWriter::AddTrack(const JointTrack& track) {
     }
     return result;
   };
-  const int input = AddAccessor(Eigen::Map<const Eigen::RowVectorXd>(
-                                    track.times_s.data(), track.key_count()),
-                                true);
+  const int input =
+      file_.AddFloats(Eigen::Map<const Eigen::RowVectorXd>(track.times_s.data(),
+                                                           track.key_count()),
+                      true);
   Eigen::MatrixXd values = mapped(track.values, false);
   if (track.interpolation == Interpolation::kCubicSpline) {
     const Eigen::MatrixXd in = mapped(track.in_tangents, true);
@@ -172,7 +133,7 @@ void GltfWriter::AddTrack(const JointTrack& track) {
     values = std::move(triples);
   }
   AddChannel(track.joint, is_rotation ? "rotation" : "translation", input,
-             AddAccessor(values, false), track.interpolation);
+             file_.AddFloats(values), track.interpolation);
 }
 
 absl::Status GltfWriter::AddSampled(const std::vector<int>& joints) {
@@ -182,10 +143,10 @@ absl::Status GltfWriter::AddSampled(const std::vector<int>& joints) {
       FramesFromClip(clip_, frame_time_s);
   if (!frames.ok()) return frames.status();
   const Eigen::Index count = frames->cols();
-  const int input =
-      AddAccessor(frame_time_s * Eigen::RowVectorXd::LinSpaced(
-                                     count, 0, static_cast<double>(count - 1)),
-                  true);
+  const int input = file_.AddFloats(
+      frame_time_s * Eigen::RowVectorXd::LinSpaced(
+                         count, 0, static_cast<double>(count - 1)),
+      true);
   for (int joint : joints) {
     const RigidTransform& rest = skeleton_.joint(joint).parent_from_joint;
     Eigen::MatrixXd translations(3, count);
@@ -199,11 +160,11 @@ absl::Status GltfWriter::AddSampled(const std::vector<int>& joints) {
         rotations.col(i) *= -1;
       }
     }
-    AddChannel(joint, "rotation", input, AddAccessor(rotations, false),
+    AddChannel(joint, "rotation", input, file_.AddFloats(rotations),
                Interpolation::kLinear);
     const JointType type = skeleton_.joint(joint).type;
     if (type != JointType::kSpherical && type != JointType::kRevolute) {
-      AddChannel(joint, "translation", input, AddAccessor(translations, false),
+      AddChannel(joint, "translation", input, file_.AddFloats(translations),
                  Interpolation::kLinear);
     }
   }
@@ -238,34 +199,7 @@ absl::StatusOr<std::string> GltfWriter::Write(GltfForm form) {
   AddNodes();
   const absl::Status status = AddAnimation();
   if (!status.ok()) return status;
-  const bool is_binary = form == GltfForm::kBinary;
-  if (!buffer_.empty()) {
-    json buffer = {{"byteLength", buffer_.size()}};
-    if (!is_binary) {
-      buffer["uri"] = absl::StrCat("data:application/octet-stream;base64,",
-                                   absl::Base64Escape(buffer_));
-    }
-    root_["buffers"] = json::array({std::move(buffer)});
-  }
-  // Names that are no UTF-8 must not throw.
-  std::string text = root_.dump(is_binary ? -1 : 1, ' ', false,
-                                json::error_handler_t::replace);
-  if (!is_binary) return text + "\n";
-  text.resize((text.size() + kAlignment - 1) / kAlignment * kAlignment, ' ');
-  std::string bytes = "glTF";
-  AppendLittleEndian(2, bytes);
-  const size_t binary_size = buffer_.empty() ? 0 : 8 + buffer_.size();
-  AppendLittleEndian(static_cast<uint32_t>(20 + text.size() + binary_size),
-                     bytes);
-  AppendLittleEndian(static_cast<uint32_t>(text.size()), bytes);
-  bytes += "JSON";
-  bytes += text;
-  if (!buffer_.empty()) {
-    AppendLittleEndian(static_cast<uint32_t>(buffer_.size()), bytes);
-    bytes.append("BIN\0", 4);
-    bytes += buffer_;
-  }
-  return bytes;
+  return std::move(file_).Finish(form);
 }
 
 }  // namespace

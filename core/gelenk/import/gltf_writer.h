@@ -11,14 +11,10 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "gelenk/import/gltf_form.h"
 #include "gelenk/motion/motion_clip.h"
 
 namespace gelenk {
-
-enum class GltfForm {
-  kJson,    // .gltf, the buffer embedded in base64
-  kBinary,  // .glb
-};
 
 // Reads back (ReadGltf, ImportGltf, ReadGltfAnimations, ClipFromGltf) as the
 // same motion in single precision, with the clip's base pose for rest. Errors:

@@ -32,6 +32,7 @@ class LayeredSkin : public Skin {
       const VolumeRig& rig, const TriangleMesh& mesh);
 
   const VolumeRig& rig() const { return *rig_; }
+  const std::shared_ptr<const VolumeRig>& shared_rig() const { return rig_; }
   const SkinBinding& binding() const { return *binding_; }
   const TriangleMesh& mesh() const { return mesh_; }
 

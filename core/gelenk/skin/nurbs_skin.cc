@@ -29,7 +29,7 @@ absl::StatusOr<std::shared_ptr<const NurbsSkin>> NurbsSkin::Create(
   if (absl::Status status = CheckNurbs(surface); !status.ok()) return status;
   if (!(options.tolerance_m > 0)) {
     Violations violations;
-    violations.Add("tolerance",
+    violations.Add("tolerance_m",
                    absl::StrCat("want > 0 m, got ", options.tolerance_m));
     return violations.ToStatus();
   }
@@ -40,17 +40,26 @@ absl::StatusOr<std::shared_ptr<const NurbsSkin>> NurbsSkin::Create(
       TessellateNurbs(*fit, options.tolerance_m, options.max_vertices);
   if (!tessellation.ok()) return tessellation.status();
   return std::shared_ptr<const NurbsSkin>(
-      new NurbsSkin(rig, *std::move(fit), *std::move(tessellation)));
+      new NurbsSkin(rig, options, *std::move(fit), *std::move(tessellation)));
 }
 
-NurbsSkin::NurbsSkin(const VolumeRig& rig, NurbsFit fit,
-                     NurbsTessellation tessellation)
+absl::StatusOr<std::shared_ptr<const NurbsSkin>> NurbsSkin::WithMuscles(
+    const SkinMuscles& muscles) const {
+  const absl::StatusOr<std::shared_ptr<const VolumeRig>> rig =
+      greville_->rig().WithMuscles(muscles);
+  if (!rig.ok()) return rig.status();
+  return Create(**rig, surface_, options_);
+}
+
+NurbsSkin::NurbsSkin(const VolumeRig& rig, const NurbsSkinOptions& options,
+                     NurbsFit fit, NurbsTessellation tessellation)
     : Skin(rig.shared_skeleton(), tessellation.grid.slots,
            static_cast<int>(tessellation.u.parameters.size() *
                             tessellation.v.parameters.size()) /
                kVerticesPerBlock,
            tessellation.grid.triangles, tessellation.grid.positions,
            rig.rest_positions()),
+      options_(options),
       surface_(std::move(fit.surface)),
       topology_(fit.topology),
       greville_(std::move(fit.greville)),

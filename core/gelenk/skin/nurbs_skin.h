@@ -49,11 +49,16 @@ class NurbsSkin : public Skin {
 
   // With the knots that were inserted.
   const NurbsSurface& surface() const { return surface_; }
+  const NurbsSkinOptions& options() const { return options_; }
   // Largest distance that was found at the probe poses, m: more than the
   // tolerance where max_points stopped the refinement.
   double estimated_error_m() const { return estimated_error_m_; }
   // The Greville points as a mesh, and their binding.
   const LayeredSkin& greville_skin() const { return *greville_; }
+
+  // The same surface on other muscles, refined further where they ask for it.
+  absl::StatusOr<std::shared_ptr<const NurbsSkin>> WithMuscles(
+      const SkinMuscles& muscles) const;
 
   // At the parameters of a vertex.
   Eigen::Vector2d parameters(int vertex) const;
@@ -69,12 +74,14 @@ class NurbsSkin : public Skin {
   size_t ByteSize() const override;
 
  private:
-  NurbsSkin(const VolumeRig& rig, NurbsFit fit, NurbsTessellation tessellation);
+  NurbsSkin(const VolumeRig& rig, const NurbsSkinOptions& options, NurbsFit fit,
+            NurbsTessellation tessellation);
 
   // Rows w x, w y, w z of all points, into workspace.net.
   void FitNet(const VolumeFrame& frame, SkinWorkspace& workspace) const;
   void MendNormals(VertexBlocks& blocks) const;
 
+  NurbsSkinOptions options_;
   NurbsSurface surface_;
   NurbsTopology topology_;
   std::shared_ptr<const LayeredSkin> greville_;

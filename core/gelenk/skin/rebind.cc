@@ -67,7 +67,7 @@ class Selection {
 
   void Select(const SelectSphere& sphere) {
     CheckFinite(sphere.center, "sphere.center");
-    CheckRadius(sphere.radius_m, "sphere.radius");
+    CheckRadius(sphere.radius_m, "sphere.radius_m");
     SelectWhere([&](const Vector3d& p) {
       return (p - sphere.center).norm() <= sphere.radius_m;
     });
@@ -81,7 +81,7 @@ class Selection {
   }
 
   void Select(const SelectComponent& component) {
-    CheckVertex(component.vertex, "component.vertex");
+    CheckVertex(component.vertex, "component_vertex");
     if (!violations_.empty()) return;
     const std::vector<int> components =
         FindComponents(FindEdges(vertex_count(), mesh_.triangles));
@@ -96,7 +96,7 @@ class Selection {
     CheckFinite(ray.origin, "ray.origin");
     CheckFinite(ray.direction, "ray.direction");
     if (ray.direction.isZero()) violations_.Add("ray.direction", "is zero");
-    CheckRadius(ray.geodesic_radius_m, "ray.geodesic_radius");
+    CheckRadius(ray.geodesic_radius_m, "ray.geodesic_radius_m");
     if (!violations_.empty()) return;
     Vector3d hit;
     const int triangle = FirstHit(ray, &hit);

@@ -84,7 +84,7 @@ class LinkDerivation {
     if (given.length_m &&
         !(*given.length_m > kShortestLinkM && std::isfinite(*given.length_m))) {
       violations_.Add(
-          field + ".length",
+          field + ".length_m",
           absl::StrCat("want > ", kShortestLinkM, " m, got ", *given.length_m));
     }
     CheckDirection(given.direction, field + ".direction");
@@ -92,7 +92,7 @@ class LinkDerivation {
     if (given.half_extents_m && !(given.half_extents_m->allFinite() &&
                                   given.half_extents_m->minCoeff() > 0)) {
       violations_.Add(
-          field + ".half_extents",
+          field + ".half_extents_m",
           absl::StrCat("want two lengths > 0, got ", (*given.half_extents_m)[0],
                        ", ", (*given.half_extents_m)[1]));
     }

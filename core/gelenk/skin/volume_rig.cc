@@ -77,15 +77,16 @@ class MuscleCompiler {
 
   void AddMuscle(const Muscle& given, const std::string& field) {
     if (given.id.empty() || given.id.size() > 63) {
-      violations_.Add(field + ".id", absl::StrCat("want 1 to 63 bytes, got ",
-                                                  given.id.size()));
+      violations_.Add(
+          field + ".muscle_id",
+          absl::StrCat("want 1 to 63 bytes, got ", given.id.size()));
     } else if (!ids_.insert(given.id).second) {
-      violations_.Add(field + ".id",
+      violations_.Add(field + ".muscle_id",
                       absl::StrCat("\"", given.id, "\" is there twice"));
     }
     const int link = FindLink(given.link_id, field);
     if (!given.pivot_m.allFinite()) {
-      violations_.Add(field + ".pivot", "want finite numbers");
+      violations_.Add(field + ".pivot_m", "want finite numbers");
     }
     VolumeRig::CompiledMuscle muscle = {};
     muscle.link = link;
@@ -155,7 +156,7 @@ class MuscleCompiler {
           absl::StrCat(given.min_scale, " > max_scale ", given.max_scale));
     }
     if (!given.pivot_m.isZero()) {
-      violations_.Add(field + ".pivot",
+      violations_.Add(field + ".pivot_m",
                       "preserves volume about the centre: want 0, 0");
     }
     if (link < 0) return;

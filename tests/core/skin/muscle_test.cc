@@ -278,16 +278,16 @@ TEST(MuscleTest, ListsEverythingThatIsWrong) {
   muscles.fullness = {{"upper", 0.5}, {"lower", 1.5}};
   EXPECT_THAT(
       ViolationLines(VolumeRig::Create(arm, {}, muscles).status()),
-      ElementsAre("muscles[0].id: want 1 to 63 bytes, got 0",
-                  "muscles[0].link_id: no link \"tail\"",
-                  "muscles[0].gain: want a number in (-1, 10], got nan",
-                  "muscles[0].driver_joint_id: no joint \"nose\"",
-                  "muscles[1].min_scale: 2 > max_scale 1",
-                  HasSubstr("[1].pivot"),
-                  HasSubstr("muscles[2].id: \"upper volume\" is there twice"),
-                  HasSubstr("muscles[2].link_id: \"upper\" preserves"),
-                  HasSubstr("fullness[0].link_id: \"upper\" is the root"),
-                  "fullness[1].fullness: want 0 to 1, got 1.5"));
+      ElementsAre(
+          "muscles[0].muscle_id: want 1 to 63 bytes, got 0",
+          "muscles[0].link_id: no link \"tail\"",
+          "muscles[0].gain: want a number in (-1, 10], got nan",
+          "muscles[0].driver_joint_id: no joint \"nose\"",
+          "muscles[1].min_scale: 2 > max_scale 1", HasSubstr("[1].pivot"),
+          HasSubstr("muscles[2].muscle_id: \"upper volume\" is there twice"),
+          HasSubstr("muscles[2].link_id: \"upper\" preserves"),
+          HasSubstr("fullness[0].link_id: \"upper\" is the root"),
+          "fullness[1].fullness: want 0 to 1, got 1.5"));
 }
 
 TEST(MuscleTest, OtherMusclesLeaveTheRigAlone) {

@@ -101,9 +101,9 @@ TEST_F(RebindTest, ListsWhatIsWrongWithASelector) {
               ElementsAre(HasSubstr("ids.vertices[0]: want 0 to")));
   EXPECT_THAT(Refused(SelectSphere{{0, 0, std::nan("")}, -1}),
               ElementsAre("sphere.center: want finite numbers",
-                          "sphere.radius: want >= 0 m, got -1"));
+                          "sphere.radius_m: want >= 0 m, got -1"));
   EXPECT_THAT(Refused(SelectComponent{1 << 20}),
-              ElementsAre(HasSubstr("component.vertex")));
+              ElementsAre(HasSubstr("component_vertex")));
   EXPECT_THAT(
       Refused(SelectRay{{0, 0, 0}, {0, 0, 0}, std::nan("")}),
       ElementsAre("ray.direction: is zero", HasSubstr("ray.geodesic_radius")));

@@ -398,9 +398,9 @@ TEST(VolumeRigTest, ListsEveryBadOverride) {
       ViolationLines(VolumeRig::Create(PelvisWithLeg(), options).status()),
       ElementsAre(HasSubstr("slenderness: want a number in (0, 10], got 0"),
                   HasSubstr("overrides[0].joint_id: no joint \"tail\""),
-                  HasSubstr("overrides[0].length: want >"),
+                  HasSubstr("overrides[0].length_m: want >"),
                   HasSubstr("overrides[0].direction: want a finite"),
-                  HasSubstr("overrides[0].half_extents: want two")));
+                  HasSubstr("overrides[0].half_extents_m: want two")));
 }
 
 TEST(VolumeRigTest, SkeletonWithoutLinksIsRefused) {
