@@ -91,6 +91,27 @@ absl::StatusOr<std::vector<JointMapOverride>> FromProto(
   return overrides;
 }
 
+v1::JointMap ToProto(absl::Span<const JointMapOverride> source,
+                     absl::Span<const JointMapOverride> target) {
+  v1::JointMap proto;
+  std::array<v1::JointPair*, kBodyRoleCount> pairs = {};
+  const auto pair_of = [&](const JointMapOverride& told) {
+    const int role = IndexOf(*FindBodyRole(told.role));
+    if (pairs[role] == nullptr) {
+      pairs[role] = proto.add_pairs();
+      pairs[role]->set_role(static_cast<v1::BodyRole>(role + 1));
+    }
+    return pairs[role];
+  };
+  for (const JointMapOverride& told : source) {
+    pair_of(told)->set_source_joint_id(told.joint_id);
+  }
+  for (const JointMapOverride& told : target) {
+    pair_of(told)->set_target_joint_id(told.joint_id);
+  }
+  return proto;
+}
+
 void ToProto(const MappedSkeleton& source, const MappedSkeleton& target,
              v1::JointMap* proto) {
   proto->Clear();

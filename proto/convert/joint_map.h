@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "gelenk/retarget/joint_map.h"
 #include "gelenk/skeleton/skeleton.h"
 #include "gelenk/v1/joint_map.pb.h"
@@ -18,6 +19,11 @@ enum class MapSide { kSource, kTarget };
 // joints that the skeleton does not have or that get two roles.
 absl::StatusOr<std::vector<JointMapOverride>> FromProto(
     const v1::JointMap& proto, MapSide side, const Skeleton& skeleton);
+
+// What is told of both sides, for a request. Roles are known ones, each at most
+// once on a side.
+v1::JointMap ToProto(absl::Span<const JointMapOverride> source,
+                     absl::Span<const JointMapOverride> target);
 
 // A map with the skeleton that it is of.
 struct MappedSkeleton {

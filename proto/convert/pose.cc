@@ -14,6 +14,11 @@ absl::StatusOr<Eigen::VectorXd> FromProto(const Skeleton& skeleton,
   return positions;
 }
 
+void CopyNumbers(const v1::Pose& proto, Eigen::VectorXd& positions) {
+  positions = Eigen::Map<const Eigen::VectorXd>(proto.positions().data(),
+                                                proto.positions_size());
+}
+
 void ToProto(const ConstVectorView& positions, v1::Pose* proto) {
   auto* out = proto->mutable_positions();
   out->Resize(static_cast<int>(positions.size()), 0);

@@ -16,6 +16,9 @@ namespace gelenk::convert {
 absl::StatusOr<Eigen::VectorXd> FromProto(const Skeleton& skeleton,
                                           const v1::Pose& proto);
 
+// Unchecked. Allocates nothing once `positions` has held a pose of that size.
+void CopyNumbers(const v1::Pose& proto, Eigen::VectorXd& positions);
+
 // Allocates nothing once `proto` has held a pose of that size.
 void ToProto(const ConstVectorView& positions, v1::Pose* proto);
 

@@ -39,6 +39,8 @@ std::string WriteContinuation(const Session& session, InstructionSet level) {
     proto.mutable_velocity()->Assign(motion.velocity.begin(),
                                      motion.velocity.end());
   }
+  proto.mutable_memory()->Assign(snapshot.memory.begin(),
+                                 snapshot.memory.end());
   return proto.SerializeAsString();
 }
 
@@ -62,6 +64,10 @@ absl::StatusOr<Continuation> ReadContinuation(const std::string& bytes,
         proto.velocity().data(), proto.velocity_size());
   }
   const std::string name(InstructionSetName(level));
+  // Another build may remember other things.
+  if (proto.build() == BuildId()) {
+    continuation.memory.assign(proto.memory().begin(), proto.memory().end());
+  }
   if (proto.build() != BuildId()) {
     continuation.inexact_because = absl::StrCat(
         "not exact: build ", proto.build(), " before, ", BuildId(), " here");

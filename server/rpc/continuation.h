@@ -18,6 +18,8 @@ struct Continuation {
   std::vector<Goal> goals;
   RigidTransform world_from_skeleton;
   JointMotion motion;
+  // Of sessions that follow a source; empty where it is of no use here.
+  std::vector<double> memory;
   // Empty when going on is exact, else why it is not.
   std::string inexact_because;
 };

@@ -14,6 +14,7 @@
 #include "convert/solver.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/skeleton/joint_check.h"
+#include "server/rpc/input_message.h"
 
 namespace gelenk::server {
 namespace {
@@ -98,6 +99,7 @@ void ToProto(const Session& session, bool draining, v1::Session* proto) {
   convert::ToProto(state.positions, proto->mutable_pose());
   convert::ToProto(state.world_from_skeleton,
                    proto->mutable_world_from_skeleton());
+  InputToProto(session.input(), proto);
   proto->set_affinity_key(session.affinity_key());
   convert::ToProto(state.idle_ttl, proto->mutable_idle_ttl());
   ToProto(snapshot.expire_time, proto->mutable_expire_time());

@@ -8,6 +8,8 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "convert/retargeting.h"
+#include "convert/solver.h"
 #include "gelenk/v1/session.pb.h"
 #include "gelenk/v1/session_service.pb.h"
 #include "server/options.h"
@@ -34,6 +36,21 @@ absl::Status UpdateState(const v1::UpdateSessionRequest& request,
 absl::StatusOr<std::optional<int64_t>> RevisionOf(const std::string& etag);
 
 void ToProto(absl::Time time, google::protobuf::Timestamp* proto);
+
+// What a solve, or a retargeted frame, took, into an answer of a stream or a
+// call; `whole` asks for all of it. Allocates nothing once `answer` has held
+// as much.
+template <class Answer>
+void ReportsToProto(const SolvedFrame& solved, bool whole, Answer* answer) {
+  if (!solved.retarget_report) {
+    convert::ToProto(solved.report, solved.detail, solved.solve_duration,
+                     answer->mutable_report());
+    return;
+  }
+  convert::ToFollowedReport(solved.solve_duration, answer->mutable_report());
+  if (!whole) return;
+  convert::ToProto(*solved.retarget_report, answer->mutable_retarget_report());
+}
 
 }  // namespace gelenk::server
 

@@ -6,12 +6,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "convert/duration.h"
 #include "convert/goal.h"
 #include "convert/pose.h"
-#include "convert/solver.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "server/rpc/find_session.h"
+#include "server/rpc/input_message.h"
 #include "server/rpc/page.h"
 #include "server/rpc/session_message.h"
 #include "server/rpc/streaming_solve_call.h"
@@ -61,6 +62,33 @@ absl::StatusOr<IkProblem> ReadParts(const v1::Session& proto,
   return MakeProblem(status, parts, *skeleton.trees, violations);
 }
 
+// What moves the session of `proto`; adds its violations.
+absl::StatusOr<SessionInput> ReadInput(const ServiceState& state,
+                                       const v1::Session& proto,
+                                       const StoredSkeleton& skeleton,
+                                       const SessionState& parts,
+                                       Violations& violations) {
+  absl::StatusOr<SessionInput> input =
+      InputFromProto(state, proto, skeleton.skeleton, parts.goals);
+  if (absl::IsInvalidArgument(input.status())) {
+    violations.AddStatus("session", input.status());
+  }
+  return input;
+}
+
+// OK while the skeletons of the session of `proto` are there.
+absl::Status CheckSkeletons(const ServiceState& state,
+                            const v1::Session& proto) {
+  for (const std::string& name :
+       {proto.skeleton(), proto.retargeting().source_skeleton()}) {
+    if (name.empty()) continue;
+    const absl::Status found =
+        state.skeletons.Find(kDefaultTenant, name).status();
+    if (!found.ok()) return found;
+  }
+  return absl::OkStatus();
+}
+
 absl::Status CreateSession(ServiceState& state,
                            const v1::CreateSessionRequest& request,
                            v1::Session* response) {
@@ -84,23 +112,26 @@ absl::Status CreateSession(ServiceState& state,
       skeleton.ok()
           ? ReadParts(proto, *skeleton, state.options.limits, parts, violations)
           : skeleton.status();
+  absl::StatusOr<SessionInput> input =
+      skeleton.ok() ? ReadInput(state, proto, *skeleton, parts, violations)
+                    : skeleton.status();
   if (!violations.empty()) return violations.ToStatus();
   if (!problem.ok()) return problem.status();
+  if (!input.ok()) return input.status();
 
   const absl::Time now = absl::Now();
   absl::StatusOr<std::shared_ptr<Session>> session = state.sessions.Create(
       kDefaultTenant, request.session_id(), request.request_id(), now,
       [&](std::string name) -> absl::StatusOr<std::shared_ptr<Session>> {
-        // It may have been deleted meanwhile.
-        const absl::Status found =
-            state.skeletons.Find(kDefaultTenant, proto.skeleton()).status();
+        // They may have been deleted meanwhile.
+        const absl::Status found = CheckSkeletons(state, proto);
         if (!found.ok()) return found;
         const std::string affinity_key = proto.affinity_key().empty()
                                              ? name.substr(kSessions.size() + 1)
                                              : proto.affinity_key();
         return std::make_shared<Session>(
             std::move(name), proto.skeleton(), affinity_key, skeleton->trees,
-            *std::move(problem), std::move(parts), now);
+            *std::move(problem), std::move(parts), now, *std::move(input));
       });
   if (!session.ok()) return session.status();
   ToProto(**session, state.draining, response);
@@ -180,6 +211,13 @@ absl::Status SolveSession(const ServiceState& state, IkSolver& solver,
       return convert::Merge(goals, request.goal_patch());
     };
   }
+  if (request.has_source_pose()) {
+    convert::CopyNumbers(request.source_pose(), frame.source_pose);
+    frame.has_source_pose = true;
+  }
+  if (request.has_capture_time()) {
+    frame.capture_time = convert::FromProto(request.capture_time());
+  }
   if (absl::Status status = (*session)->Apply(kUnaryDriver, frame, absl::Now());
       !status.ok()) {
     return status;
@@ -191,8 +229,7 @@ absl::Status SolveSession(const ServiceState& state, IkSolver& solver,
     return status;
   }
   convert::ToProto(solved.positions, response->mutable_pose());
-  convert::ToProto(solved.report, solved.detail, solved.solve_duration,
-                   response->mutable_report());
+  ReportsToProto(solved, /*whole=*/true, response);
   if (request.include_joint_frames()) {
     WorldTransforms frames;
     ForwardKinematics((*session)->skeleton(), solved.positions,

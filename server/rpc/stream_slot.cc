@@ -5,12 +5,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "convert/conditioning.h"
 #include "convert/duration.h"
 #include "convert/geometry.h"
 #include "convert/goal.h"
 #include "convert/pose.h"
-#include "convert/solver.h"
 #include "gelenk/base/violations.h"
+#include "server/clock.h"
 #include "server/rpc/continuation.h"
 #include "server/rpc/session_message.h"
 #include "server/rpc/status.h"
@@ -57,6 +58,10 @@ absl::Status FrameFromProto(const v1::TargetFrame& proto, InputFrame& frame) {
   }
   if (proto.has_capture_time()) {
     frame.capture_time = convert::FromProto(proto.capture_time());
+  }
+  if (proto.has_source_pose()) {
+    convert::CopyNumbers(proto.source_pose(), frame.source_pose);
+    frame.has_source_pose = true;
   }
   if (proto.has_goal_patch()) {
     frame.patch = [&patch = proto.goal_patch()](absl::Span<const Goal> goals) {
@@ -116,8 +121,22 @@ absl::Status Resume(Session& session, DriverId driver,
     state.goals = &point.continuation->goals;
     state.world_from_skeleton = &point.continuation->world_from_skeleton;
     state.motion = &point.continuation->motion;
+    if (!point.continuation->memory.empty()) {
+      state.memory = &point.continuation->memory;
+    }
   }
   return session.Resume(driver, state);
+}
+
+// Why going on from `point` is not exact; empty when it is.
+std::string InexactBecause(const Session& session, const ResumePoint& point) {
+  const FrameConditioning* conditioning = session.input().conditioning.get();
+  if (conditioning != nullptr && conditioning->options().jitter_frames > 0) {
+    return "not exact: a jitter buffer goes by the time of arrival";
+  }
+  if (point.continuation) return point.continuation->inexact_because;
+  if (session.input().empty()) return "";
+  return "not exact: resume_from has no continuation, the motion begins anew";
 }
 
 }  // namespace
@@ -154,9 +173,10 @@ absl::StatusOr<std::unique_ptr<StreamSlot>> StreamSlot::Attach(
   event->set_kind(v1::StreamEvent::KIND_ATTACHED);
   event->set_slot(request.slot());
   event->set_sequence_number((*session)->sequence_number());
-  if (point->continuation && !point->continuation->inexact_because.empty()) {
-    ToProto(absl::FailedPreconditionError(point->continuation->inexact_because),
-            event->mutable_status());
+  const std::string inexact =
+      request.has_resume_from() ? InexactBecause(**session, *point) : "";
+  if (!inexact.empty()) {
+    ToProto(absl::FailedPreconditionError(inexact), event->mutable_status());
   }
   return slot;
 }
@@ -188,9 +208,8 @@ size_t StreamSlot::answer_bytes() const {
 absl::Status StreamSlot::Take(const v1::TargetFrame& frame, absl::Time now) {
   if (absl::Status status = FrameFromProto(frame, input_); !status.ok()) {
     // The number is used up all the same, so that answers stay in order.
-    InputFrame number_only;
-    number_only.sequence_number = frame.sequence_number();
-    absl::Status numbered = session_->Apply(driver_, number_only, now);
+    absl::Status numbered =
+        session_->Skip(driver_, frame.sequence_number(), now);
     return numbered.ok() ? status : numbered;
   }
   if (absl::Status status = session_->Apply(driver_, input_, now);
@@ -200,30 +219,60 @@ absl::Status StreamSlot::Take(const v1::TargetFrame& frame, absl::Time now) {
   ++taken_;
   sequence_number_ = frame.sequence_number();
   has_capture_time_ = frame.has_capture_time();
-  if (has_capture_time_) capture_time_ = frame.capture_time();
+  if (has_capture_time_) {
+    capture_time_ = frame.capture_time();
+    NoteAge(*input_.capture_time, now);
+  }
   return absl::OkStatus();
+}
+
+void StreamSlot::NoteAge(absl::Duration capture_time, absl::Time arrival) {
+  const double capture_s = absl::ToDoubleSeconds(capture_time);
+  const double arrival_s = absl::ToDoubleSeconds(arrival - absl::UnixEpoch());
+  clock_offset_.Note(capture_s, arrival_s);
+  age_s_ = std::max(0.0, arrival_s - capture_s - *clock_offset_.offset_s());
 }
 
 absl::Status StreamSlot::Answer(IkSolver& solver, absl::Time read_time,
                                 v1::PoseFrame* answer) {
   const bool whole = answered_ % report_interval_ == 0;
-  if (absl::Status status = session_->Solve(driver_, solver, whole, solved_);
-      !status.ok()) {
-    return status;
-  }
+  const absl::Status status = session_->Solve(driver_, solver, whole, solved_);
+  // A frame that is late is answered, too; see LatePolicy.
+  if (!status.ok() && !absl::IsDeadlineExceeded(status)) return status;
   answer->set_slot(slot_);
   answer->set_sequence_number(sequence_number_);
-  if (has_capture_time_) *answer->mutable_capture_time() = capture_time_;
+  if (status.ok()) {
+    ReportsToProto(solved_, whole, answer);
+    AddExtras(answer);
+  } else {
+    ToProto(status, answer->mutable_status());
+    session_->CopyPositions(solved_.positions);
+    solved_.end_time = Now();
+  }
   convert::ToProto(solved_.positions, answer->mutable_pose());
-  convert::ToProto(solved_.report, solved_.detail, solved_.solve_duration,
-                   answer->mutable_report());
+  if (has_capture_time_) AddTime(answer);
   answer->set_merged_frame_count(taken_ - 1);
-  AddExtras(answer);
   convert::ToProto(solved_.end_time - read_time,
                    answer->mutable_server_duration());
   taken_ = 0;
   ++answered_;
   return absl::OkStatus();
+}
+
+void StreamSlot::AddTime(v1::PoseFrame* answer) {
+  *answer->mutable_capture_time() = capture_time_;
+  v1::FrameTiming* timing = answer->mutable_timing();
+  double age_s = age_s_;
+  if (solved_.live) {
+    timing->set_source(convert::SourceToProto(solved_.live->state));
+    convert::ToProto(solved_.latency, timing->mutable_latency());
+    // By the captures, what is shown is so much older than the newest frame;
+    // with a jitter buffer it is by the arrivals, and all of it.
+    const bool by_arrival =
+        session_->input().conditioning->options().jitter_frames > 0;
+    age_s = solved_.live->age_s + (by_arrival ? 0 : age_s_);
+  }
+  convert::ToProto(absl::Seconds(age_s), timing->mutable_age());
 }
 
 void StreamSlot::AddExtras(v1::PoseFrame* answer) {

@@ -12,11 +12,16 @@
 #include "absl/time/time.h"
 #include "gelenk/ik/ik_solver.h"
 #include "gelenk/kinematics/forward_kinematics.h"
+#include "gelenk/motion/live_clock.h"
 #include "gelenk/v1/session_service.pb.h"
 #include "server/rpc/service_state.h"
 #include "server/session/session.h"
 
 namespace gelenk::server {
+
+// The fastest way of a frame is looked for among those of this time; clocks
+// drift by less than a millisecond in it.
+inline constexpr double kClockWindow_s = 10;
 
 class StreamSlot {
  public:
@@ -58,6 +63,10 @@ class StreamSlot {
  private:
   StreamSlot(const ServiceState& state, std::shared_ptr<Session> session,
              DriverId driver, const v1::AttachSession& request);
+  // By how much the newest frame came later than the fastest of late.
+  void NoteAge(absl::Duration capture_time, absl::Time arrival);
+  // Fills the times of an answer to frames that told theirs.
+  void AddTime(v1::PoseFrame* answer);
   // Fills joint frames and continuation where they are due.
   void AddExtras(v1::PoseFrame* answer);
 
@@ -78,6 +87,8 @@ class StreamSlot {
   int64_t sequence_number_ = 0;
   google::protobuf::Duration capture_time_;
   bool has_capture_time_ = false;
+  ClockOffset clock_offset_{kClockWindow_s};
+  double age_s_ = 0;
   int64_t answered_ = 0;
 };
 

@@ -2,6 +2,7 @@
 #ifndef GELENK_SERVER_SESSION_INPUT_FRAME_H_
 #define GELENK_SERVER_SESSION_INPUT_FRAME_H_
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -31,8 +32,13 @@ struct InputFrame {
       patch;
   std::vector<GoalUpdate> updates;
   std::optional<RigidTransform> world_from_skeleton;
-  // On the client's clock; bounds the joints' speed where the session wants it.
+  // On the client's clock; bounds the joints' speed where the session wants it,
+  // and is the time of a source's motion.
   std::optional<absl::Duration> capture_time;
+  // Of the body that the session follows; kept for its memory when there is
+  // none.
+  bool has_source_pose = false;
+  Eigen::VectorXd source_pose;
 
   void Clear() {
     sequence_number.reset();
@@ -40,6 +46,7 @@ struct InputFrame {
     updates.clear();
     world_from_skeleton.reset();
     capture_time.reset();
+    has_source_pose = false;
   }
 };
 

@@ -12,14 +12,11 @@
 namespace gelenk::server {
 namespace {
 
-absl::Status CheckSequence(const InputFrame& frame, int64_t newest) {
-  if (!frame.sequence_number || *frame.sequence_number > newest) {
-    return absl::OkStatus();
-  }
+absl::Status CheckSequence(std::optional<int64_t> number, int64_t newest) {
+  if (!number || *number > newest) return absl::OkStatus();
   Violations violations;
   violations.Add("sequence_number",
-                 absl::StrCat("want more than ", newest, ", got ",
-                              *frame.sequence_number));
+                 absl::StrCat("want more than ", newest, ", got ", *number));
   return violations.ToStatus();
 }
 
@@ -68,12 +65,14 @@ void CheckMotion(const Skeleton& skeleton, const JointMotion& motion,
 
 Session::Session(std::string name, std::string skeleton_name,
                  std::string affinity_key, std::shared_ptr<SharedTrees> trees,
-                 IkProblem problem, SessionState state, absl::Time now)
+                 IkProblem problem, SessionState state, absl::Time now,
+                 SessionInput input)
     : name_(std::move(name)),
       skeleton_name_(std::move(skeleton_name)),
       affinity_key_(std::move(affinity_key)),
       trees_(std::move(trees)),
       create_time_(now),
+      input_(std::move(input)),
       problem_(std::move(problem)),
       options_(state.options),
       positions_(std::move(state.positions)),
@@ -90,6 +89,7 @@ absl::Status Session::Claim(DriverId driver, bool take_over, absl::Time now) {
     return absl::FailedPreconditionError(absl::StrCat(
         "session: ", name_, " has a driver; attach with take_over to take it"));
   }
+  input_.ForgetTime();
   driver_ = driver;
   last_driven_ = now;
   return absl::OkStatus();
@@ -131,11 +131,24 @@ absl::Status Session::Resume(DriverId driver, const ResumeState& state) {
     CheckMotion(skeleton(), *state.motion, violations);
   }
   if (!violations.empty()) return violations.ToStatus();
+  std::optional<IkProblem> resumed;
   if (state.goals != nullptr) {
     absl::StatusOr<IkProblem> problem =
         trees_->CreateProblem(*state.goals, options_);
     if (!problem.ok()) return problem.status();
-    problem_ = *std::move(problem);
+    resumed = *std::move(problem);
+  }
+  if (!input_.empty()) {
+    absl::Status status =
+        input_.Resume(resumed ? resumed->goals() : problem_.goals(),
+                      state.positions, state.memory);
+    if (!status.ok()) {
+      input_.SetGoals(problem_.goals());
+      return status;
+    }
+  }
+  if (resumed) {
+    problem_ = *std::move(resumed);
     // The driver cannot know these from its create request.
     drifted_ = true;
     ++revision_;
@@ -149,18 +162,35 @@ absl::Status Session::Resume(DriverId driver, const ResumeState& state) {
   return absl::OkStatus();
 }
 
-absl::Status Session::Apply(DriverId driver, InputFrame& frame,
-                            absl::Time now) {
-  std::lock_guard<std::mutex> lock(mutex_);
+absl::Status Session::TakeNumberLocked(DriverId driver,
+                                       std::optional<int64_t> sequence_number,
+                                       absl::Time now) {
   if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
     return status;
   }
-  if (absl::Status status = CheckSequence(frame, sequence_number_);
+  if (absl::Status status = CheckSequence(sequence_number, sequence_number_);
       !status.ok()) {
     return status;
   }
-  if (frame.sequence_number) sequence_number_ = *frame.sequence_number;
+  if (sequence_number) sequence_number_ = *sequence_number;
   last_driven_ = now;
+  return absl::OkStatus();
+}
+
+absl::Status Session::Skip(DriverId driver, int64_t sequence_number,
+                           absl::Time now) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return TakeNumberLocked(driver, sequence_number, now);
+}
+
+absl::Status Session::Apply(DriverId driver, InputFrame& frame,
+                            absl::Time now) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  if (absl::Status status =
+          TakeNumberLocked(driver, frame.sequence_number, now);
+      !status.ok()) {
+    return status;
+  }
 
   std::optional<IkProblem> patched;
   if (frame.patch) {
@@ -177,6 +207,13 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
       !status.ok()) {
     return status;
   }
+  if (!input_.empty() || frame.has_source_pose) {
+    if (absl::Status status =
+            input_.CheckFrame(patched ? *patched : problem_, frame);
+        !status.ok()) {
+      return status;
+    }
+  }
 
   // Nothing can fail from here on.
   capture_time_ = frame.capture_time;
@@ -185,12 +222,16 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
     drifted_ = true;
     ++revision_;
   }
+  if (frame.patch) input_.SetGoals(problem_.goals());
+  const bool conditions_targets = input_.ConditionsTargets();
   // Counted, not compared one by one: a goal named twice and another one not at
   // all would be a strange client, and gets a continuation too few.
   size_t named = 0;
   for (const GoalUpdate& update : frame.updates) {
     if (update.target) {
-      problem_.SetTarget(update.goal_index, *update.target);
+      if (!conditions_targets || !TargetRig::Takes(*update.target)) {
+        problem_.SetTarget(update.goal_index, *update.target);
+      }
       ++named;
     }
     if (update.weight) {
@@ -203,10 +244,13 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
     problem_.SetWorldFromSkeleton(*frame.world_from_skeleton);
     drifted_ = true;
   }
+  if (!input_.empty()) input_.Take(frame, now);
   return absl::OkStatus();
 }
 
 bool Session::IsHeavy() const {
+  // Following a source is always warm.
+  if (input_.source != nullptr) return false;
   std::lock_guard<std::mutex> lock(mutex_);
   const SolveStart start = cold_ ? SolveStart::kCold : SolveStart::kWarm;
   return RestartBudget(options_, start) > 0 ||
@@ -218,6 +262,18 @@ absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
   std::lock_guard<std::mutex> lock(mutex_);
   if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
     return status;
+  }
+  if (!input_.empty()) {
+    const absl::Status status = input_.Sample(problem_);
+    if (input_.conditioning != nullptr) {
+      frame.live = input_.conditioning->status();
+      frame.latency = input_.conditioning->latency();
+    }
+    if (!status.ok()) return status;
+    if (input_.source != nullptr) {
+      FollowSourceLocked(frame);
+      return absl::OkStatus();
+    }
   }
   SolverOptions options = options_;
   if (!whole) options.detail = ReportDetail::kBrief;
@@ -232,9 +288,22 @@ absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
   ++version_;
   frame.positions = positions_;
   frame.detail = options.detail;
-  frame.needs_continuation = drifted_ || partly_named_ || options_.limit_speed;
+  frame.needs_continuation =
+      drifted_ || partly_named_ || options_.limit_speed || !input_.empty();
   if (options_.limit_speed) NoteMotionLocked(frame);
   return absl::OkStatus();
+}
+
+void Session::FollowSourceLocked(SolvedFrame& frame) {
+  const absl::Time begin = Now();
+  input_.source->Step(problem_, positions_);
+  frame.end_time = Now();
+  frame.solve_duration = frame.end_time - begin;
+  cold_ = false;
+  ++version_;
+  frame.positions = positions_;
+  frame.needs_continuation = true;
+  frame.retarget_report = input_.source->report();
 }
 
 const StepBounds* Session::SpeedBoundsLocked(SolvedFrame& frame) const {
@@ -267,7 +336,8 @@ int64_t Session::sequence_number() const {
 
 SessionSnapshot Session::Snapshot() const {
   std::lock_guard<std::mutex> lock(mutex_);
-  return {StateLocked(), last_driven_ + idle_ttl_, revision_, motion_};
+  return {StateLocked(), last_driven_ + idle_ttl_, revision_, motion_,
+          StateOf(input_)};
 }
 
 SessionState Session::StateLocked() const {
@@ -299,6 +369,11 @@ absl::Status Session::Update(
   absl::StatusOr<IkProblem> problem =
       trees_->CreateProblem(std::move(state.goals), state.options);
   if (!problem.ok()) return problem.status();
+  if (absl::Status status = input_.CheckGoals(problem->goals()); !status.ok()) {
+    return status;
+  }
+  input_.SetGoals(problem->goals());
+  input_.Reset();
   problem->SetWorldFromSkeleton(state.world_from_skeleton);
   problem->KeepPlants(problem_);
 
@@ -347,7 +422,8 @@ size_t Session::ByteSize() const {
   std::lock_guard<std::mutex> lock(mutex_);
   return sizeof(*this) + name_.capacity() + skeleton_name_.capacity() +
          affinity_key_.capacity() + problem_.ByteSize() - sizeof(problem_) +
-         (positions_.size() + motion_.velocity.size()) * sizeof(double);
+         (positions_.size() + motion_.velocity.size()) * sizeof(double) +
+         input_.ByteSize();
 }
 
 }  // namespace gelenk::server

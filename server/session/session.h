@@ -16,11 +16,13 @@
 
 #include "absl/base/thread_annotations.h"
 #include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 #include "absl/time/time.h"
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/ik_solver.h"
 #include "gelenk/skeleton/skeleton.h"
 #include "server/session/input_frame.h"
+#include "server/session/session_input.h"
 #include "server/session/shared_trees.h"
 
 namespace gelenk::server {
@@ -55,6 +57,8 @@ struct SessionSnapshot {
   absl::Time expire_time;
   int64_t revision = 0;
   JointMotion motion;
+  // Of its SessionInput; empty where there is nothing in it.
+  std::vector<double> memory;
 };
 
 // Where a driver last saw a session.
@@ -65,6 +69,8 @@ struct ResumeState {
   const std::vector<Goal>* goals = nullptr;
   const RigidTransform* world_from_skeleton = nullptr;
   const JointMotion* motion = nullptr;
+  // Of a SessionInput; null makes it begin anew.
+  const std::vector<double>* memory = nullptr;
 };
 
 // What a solve gave; reused from frame to frame.
@@ -80,15 +86,20 @@ struct SolvedFrame {
   // The session holds more than a driver could tell from its last frame and its
   // create request: give it a continuation.
   bool needs_continuation = false;
+  // Of sessions that follow a source.
+  std::optional<RetargetReport> retarget_report;
+  // Of sessions with conditioning.
+  std::optional<LiveStatus> live;
+  absl::Duration latency;
 };
 
 class Session {
  public:
   // `state.positions` has passed CheckPositions, `problem` was made of
-  // `state.goals` by `trees`.
+  // `state.goals` by `trees`, which have passed CheckGoals of `input.source`.
   Session(std::string name, std::string skeleton_name, std::string affinity_key,
           std::shared_ptr<SharedTrees> trees, IkProblem problem,
-          SessionState state, absl::Time now);
+          SessionState state, absl::Time now, SessionInput input = {});
 
   const std::string& name() const { return name_; }
   const std::string& skeleton_name() const { return skeleton_name_; }
@@ -96,6 +107,14 @@ class Session {
   const Skeleton& skeleton() const { return *trees_->skeleton(); }
   SharedTrees& trees() const { return *trees_; }
   absl::Time create_time() const { return create_time_; }
+  // For what in it never changes: names, spec, options.
+  const SessionInput& input() const { return input_; }
+  // Whether it is made of that skeleton.
+  bool IsOn(absl::string_view skeleton_name) const {
+    return skeleton_name_ == skeleton_name ||
+           (input_.source != nullptr &&
+            input_.source->skeleton_name() == skeleton_name);
+  }
 
   // Makes `driver` the one who may solve. FAILED_PRECONDITION when there is
   // another one and `take_over` is not set; who loses it is told by
@@ -113,6 +132,9 @@ class Session {
   // Takes a frame's targets, without solving. A frame with any fault changes
   // nothing but uses up its sequence number. Allocates nothing without a patch.
   absl::Status Apply(DriverId driver, InputFrame& frame, absl::Time now);
+
+  // Uses up the sequence number of a frame with a fault.
+  absl::Status Skip(DriverId driver, int64_t sequence_number, absl::Time now);
 
   // True when the next solve may take long enough to be no guest of an I/O
   // thread: it may restart, or diagnoses.
@@ -155,6 +177,15 @@ class Session {
  private:
   absl::Status CheckDriverLocked(DriverId driver) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // OK when `driver` may bring a frame of that number now, which is then used
+  // up.
+  absl::Status TakeNumberLocked(DriverId driver,
+                                std::optional<int64_t> sequence_number,
+                                absl::Time now)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Instead of a solve.
+  void FollowSourceLocked(SolvedFrame& frame)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // What the speed limits leave for the next solve; null where there are none.
   const StepBounds* SpeedBoundsLocked(SolvedFrame& frame) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -168,6 +199,8 @@ class Session {
   const std::string affinity_key_;
   const std::shared_ptr<SharedTrees> trees_;
   const absl::Time create_time_;
+  // Guarded by mutex_, but for what in it never changes.
+  SessionInput input_;
 
   mutable std::mutex mutex_;
   IkProblem problem_ ABSL_GUARDED_BY(mutex_);

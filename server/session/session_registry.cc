@@ -107,7 +107,7 @@ absl::Status SessionRegistry::RemoveUnused(
     const std::function<absl::Status()>& remove) const {
   std::lock_guard<std::shared_mutex> lock(mutex_);
   for (const auto& [key, session] : sessions_) {
-    if (key.first == tenant && session->skeleton_name() == skeleton_name &&
+    if (key.first == tenant && session->IsOn(skeleton_name) &&
         !session->IsExpired(now)) {
       return absl::FailedPreconditionError(
           absl::StrCat("name: ", session->name(), " is on ", skeleton_name));

@@ -97,5 +97,17 @@ TEST(FrameMergeTest, PatchStaysApart) {
   EXPECT_EQ(patch.targets_size(), 1);
 }
 
+TEST(FrameMergeTest, ASourcePoseStaysUntilTheNext) {
+  v1::TargetFrame older;
+  older.mutable_source_pose()->add_positions(1);
+  v1::TargetFrame newer;
+  ASSERT_TRUE(Merge(newer, &older));
+  EXPECT_EQ(older.source_pose().positions(0), 1);
+  newer.mutable_source_pose()->add_positions(2);
+  ASSERT_TRUE(Merge(newer, &older));
+  ASSERT_EQ(older.source_pose().positions_size(), 1);
+  EXPECT_EQ(older.source_pose().positions(0), 2);
+}
+
 }  // namespace
 }  // namespace gelenk::client

@@ -56,6 +56,18 @@ TEST_F(SessionSpecTest, AffinityIsTheSessionIdUnlessGiven) {
   EXPECT_EQ(AffinityKey(spec), "robot-7");
 }
 
+TEST_F(SessionSpecTest, ASourceSkeletonIsNamedToo) {
+  std::vector<SessionSpec> specs = {FullSpec()};
+  specs[0].source_skeleton.mutable_skeleton();
+  specs[0].session.mutable_session()->mutable_retargeting();
+  ASSERT_TRUE(Complete(&specs, random_).ok());
+  const std::string& source = specs[0].source_skeleton.skeleton_id();
+  EXPECT_NE(source, specs[0].skeleton.skeleton_id());
+  EXPECT_FALSE(specs[0].source_skeleton.request_id().empty());
+  EXPECT_EQ(specs[0].session.session().retargeting().source_skeleton(),
+            "skeletons/" + source);
+}
+
 TEST_F(SessionSpecTest, SessionsOfOneSkeletonRepeatOneRequest) {
   std::vector<SessionSpec> specs(2, FullSpec());
   for (SessionSpec& spec : specs) {

@@ -16,6 +16,20 @@ absl::Status Delete(const std::string& session_id, Connection& connection,
       .status();
 }
 
+// Reads a skeleton that is there into what would create it.
+absl::Status AdoptSkeleton(const std::string& name, Connection& connection,
+                           const CallOptions& options,
+                           v1::CreateSkeletonRequest* request) {
+  v1::GetSkeletonRequest get;
+  get.set_name(name);
+  absl::StatusOr<v1::Skeleton> skeleton =
+      connection.Call(&v1::KinematicsService::Stub::GetSkeleton, get, options);
+  if (!skeleton.ok()) return skeleton.status();
+  request->set_skeleton_id(std::string(absl::StripPrefix(name, "skeletons/")));
+  *request->mutable_skeleton() = *std::move(skeleton);
+  return absl::OkStatus();
+}
+
 bool IsDone(const absl::Status& status, bool again) {
   return status.ok() || (again && absl::IsAlreadyExists(status));
 }
@@ -32,11 +46,12 @@ absl::Status Create(const Creation& creation, Connection& connection,
         Delete(creation.session.session_id(), connection, options);
     if (!deleted.ok()) return deleted;
   }
-  if (creation.skeleton.has_value()) {
+  for (const auto* skeleton : {&creation.skeleton, &creation.source_skeleton}) {
+    if (!skeleton->has_value()) continue;
     absl::Status created =
         connection
-            .Call(&v1::KinematicsService::Stub::CreateSkeleton,
-                  *creation.skeleton, options)
+            .Call(&v1::KinematicsService::Stub::CreateSkeleton, **skeleton,
+                  options)
             .status();
     if (!IsDone(created, creation.again)) return created;
   }
@@ -58,15 +73,14 @@ absl::Status Adopt(SessionSpec* spec, Connection& connection,
   absl::StatusOr<v1::Session> session = connection.Call(
       &v1::SessionService::Stub::GetSession, get_session, options);
   if (!session.ok()) return session.status();
-  v1::GetSkeletonRequest get_skeleton;
-  get_skeleton.set_name(session->skeleton());
-  absl::StatusOr<v1::Skeleton> skeleton = connection.Call(
-      &v1::KinematicsService::Stub::GetSkeleton, get_skeleton, options);
-  if (!skeleton.ok()) return skeleton.status();
-
-  spec->skeleton.set_skeleton_id(
-      std::string(absl::StripPrefix(session->skeleton(), "skeletons/")));
-  *spec->skeleton.mutable_skeleton() = *std::move(skeleton);
+  absl::Status read =
+      AdoptSkeleton(session->skeleton(), connection, options, &spec->skeleton);
+  if (!read.ok()) return read;
+  const std::string& source = session->retargeting().source_skeleton();
+  if (!source.empty()) {
+    read = AdoptSkeleton(source, connection, options, &spec->source_skeleton);
+    if (!read.ok()) return read;
+  }
   session->clear_etag();
   *spec->session.mutable_session() = *std::move(session);
   return absl::OkStatus();

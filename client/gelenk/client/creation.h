@@ -14,6 +14,7 @@ namespace gelenk::client {
 
 struct Creation {
   std::optional<v1::CreateSkeletonRequest> skeleton;
+  std::optional<v1::CreateSkeletonRequest> source_skeleton;
   // Without a session in it: the session is there, and is read.
   v1::CreateSessionRequest session;
   std::string affinity_key;

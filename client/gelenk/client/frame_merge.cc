@@ -43,6 +43,9 @@ bool Merge(const v1::TargetFrame& newer, v1::TargetFrame* older) {
     const v1::GoalTarget& target = newer.targets(i);
     Merge(target, FindOrAdd(target.goal_index(), i, older));
   }
+  if (newer.has_source_pose()) {
+    *older->mutable_source_pose() = newer.source_pose();
+  }
   if (newer.has_world_from_skeleton()) {
     *older->mutable_world_from_skeleton() = newer.world_from_skeleton();
   }

@@ -1,5 +1,6 @@
 #include "gelenk/client/session_spec.h"
 
+#include <map>
 #include <set>
 
 #include "absl/strings/str_cat.h"
@@ -11,16 +12,26 @@ std::string RandomId(absl::string_view prefix, std::mt19937_64& random) {
   return absl::StrCat(prefix, "-", absl::Hex(random(), absl::kZeroPad16));
 }
 
-void CompleteSpec(SessionSpec* spec, std::mt19937_64& random) {
-  v1::CreateSkeletonRequest& skeleton = spec->skeleton;
-  if (skeleton.has_skeleton()) {
-    if (skeleton.skeleton_id().empty()) {
-      skeleton.set_skeleton_id(RandomId("skeleton", random));
-    }
-    if (skeleton.request_id().empty()) {
-      skeleton.set_request_id(RandomId("create", random));
-    }
+void CompleteSkeleton(v1::CreateSkeletonRequest& skeleton,
+                      std::mt19937_64& random) {
+  if (!skeleton.has_skeleton()) return;
+  if (skeleton.skeleton_id().empty()) {
+    skeleton.set_skeleton_id(RandomId("skeleton", random));
   }
+  if (skeleton.request_id().empty()) {
+    skeleton.set_request_id(RandomId("create", random));
+  }
+}
+
+std::string NameOf(const v1::CreateSkeletonRequest& skeleton) {
+  return absl::StrCat("skeletons/", skeleton.skeleton_id());
+}
+
+void CompleteSpec(SessionSpec* spec, std::mt19937_64& random) {
+  const v1::CreateSkeletonRequest& skeleton = spec->skeleton;
+  const v1::CreateSkeletonRequest& source = spec->source_skeleton;
+  CompleteSkeleton(spec->skeleton, random);
+  CompleteSkeleton(spec->source_skeleton, random);
   v1::CreateSessionRequest& session = spec->session;
   if (!session.has_session()) return;
   if (session.session_id().empty()) {
@@ -30,24 +41,26 @@ void CompleteSpec(SessionSpec* spec, std::mt19937_64& random) {
     session.set_request_id(RandomId("create", random));
   }
   if (session.session().skeleton().empty() && skeleton.has_skeleton()) {
-    session.mutable_session()->set_skeleton(
-        absl::StrCat("skeletons/", skeleton.skeleton_id()));
+    session.mutable_session()->set_skeleton(NameOf(skeleton));
+  }
+  if (session.session().has_retargeting() && source.has_skeleton() &&
+      session.session().retargeting().source_skeleton().empty()) {
+    session.mutable_session()->mutable_retargeting()->set_source_skeleton(
+        NameOf(source));
   }
 }
 
 // Sessions of one skeleton repeat one request, so that the server answers its
 // first result instead of ALREADY_EXISTS.
 void ShareSkeletonRequests(std::vector<SessionSpec>* specs) {
-  for (size_t i = 0; i < specs->size(); ++i) {
-    for (size_t j = 0; j < i; ++j) {
-      const v1::CreateSkeletonRequest& earlier = (*specs)[j].skeleton;
-      v1::CreateSkeletonRequest& later = (*specs)[i].skeleton;
-      if (!later.has_skeleton() ||
-          later.skeleton_id() != earlier.skeleton_id()) {
-        continue;
-      }
-      later.set_request_id(earlier.request_id());
-      break;
+  std::map<std::string, std::string> request_of_id;
+  for (SessionSpec& spec : *specs) {
+    for (v1::CreateSkeletonRequest* request :
+         {&spec.skeleton, &spec.source_skeleton}) {
+      if (!request->has_skeleton()) continue;
+      request->set_request_id(
+          request_of_id.emplace(request->skeleton_id(), request->request_id())
+              .first->second);
     }
   }
 }

@@ -17,12 +17,16 @@ struct SessionSpec {
   // The skeleton to create; without `skeleton.skeleton`, the one that the
   // session names is there already.
   v1::CreateSkeletonRequest skeleton;
+  // The same for the skeleton of the poses that a session with retargeting
+  // follows.
+  v1::CreateSkeletonRequest source_skeleton;
   // The session to create; without `session.session`, the one that is named by
   // `session.session_id` is there already: what is needed to create it again is
   // then read from the server.
   //
   // An id or request id that is empty is chosen by the library. An empty
-  // `session.session.skeleton` means the skeleton above.
+  // `session.session.skeleton` means the skeleton above, likewise an empty
+  // `session.session.retargeting.source_skeleton` where there is one.
   v1::CreateSessionRequest session;
   v1::FramePolicy frame_policy = v1::FRAME_POLICY_LATEST_WINS;
   bool include_joint_frames = false;

@@ -17,6 +17,14 @@ std::string NextRequestId(const std::string& request_id, int creation_count) {
   return absl::StrCat(request_id.substr(0, 52), "-", creation_count);
 }
 
+std::optional<v1::CreateSkeletonRequest> NextRequest(
+    const v1::CreateSkeletonRequest& request, int creation_count) {
+  if (!request.has_skeleton()) return std::nullopt;
+  v1::CreateSkeletonRequest next = request;
+  next.set_request_id(NextRequestId(request.request_id(), creation_count));
+  return next;
+}
+
 absl::Status NewAttempt(absl::string_view reason, const absl::Status& status) {
   return absl::UnavailableError(absl::StrCat(reason, ": ", status.ToString()));
 }
@@ -50,11 +58,9 @@ Creation Slot::NextCreation() {
   creation.again = creation_count_ > 0;
   creation.replaces = replace_;
   creation.affinity_key = AffinityKey(spec_);
-  if (spec_.skeleton.has_skeleton()) {
-    creation.skeleton = spec_.skeleton;
-    creation.skeleton->set_request_id(
-        NextRequestId(spec_.skeleton.request_id(), creation_count_));
-  }
+  creation.skeleton = NextRequest(spec_.skeleton, creation_count_);
+  creation.source_skeleton =
+      NextRequest(spec_.source_skeleton, creation_count_);
   creation.session = spec_.session;
   creation.session.set_request_id(
       NextRequestId(spec_.session.request_id(), creation_count_));

@@ -100,7 +100,7 @@ double ContactDetector::HeightOf(const FootPoints& points, int side,
   return at.y() - feet_.planted_heights[side][point] - FloorAt(at);
 }
 
-const ContactDetector::Moment& ContactDetector::WindowStart() const {
+int ContactDetector::WindowStart() const {
   // From the newest to the oldest; times differ by rounding from multiples of
   // the frame time.
   constexpr double kRounding_s = 1e-4;
@@ -112,7 +112,41 @@ const ContactDetector::Moment& ContactDetector::WindowStart() const {
       break;
     }
   }
-  return history_[index];
+  return index;
+}
+
+int ContactDetector::LiveCount() const {
+  if (history_count_ == 0) return 0;
+  const int back =
+      (history_next_ + kHistory - 1 - WindowStart() + kHistory) % kHistory;
+  // Remember compares the latest with the one before.
+  return std::min(history_count_, std::max(back + 1, 2));
+}
+
+void ContactDetector::Exchange(StateNumbers& state) {
+  int count = LiveCount();
+  state.Count(count, 0, kHistory);
+  if (state.is_reading()) {
+    history_count_ = count;
+    history_next_ = count % kHistory;
+  }
+  for (int i = 0; i < count; ++i) {
+    Moment& moment =
+        history_[(history_next_ + kHistory - count + i) % kHistory];
+    state.Number(moment.time_s);
+    for (auto& foot : moment.points) {
+      for (Eigen::Vector3d& point : foot) state.Vector(point);
+    }
+  }
+  state.Number(time_s_);
+  state.Number(floor_m_);
+  for (auto& foot : bias_m_) {
+    for (double& bias : foot) state.Number(bias);
+  }
+  for (int side = 0; side < 2; ++side) {
+    states_[side].Exchange(state);
+    contacts_[side] = states_[side].contacts();
+  }
 }
 
 void ContactDetector::Remember(const FootPoints& points) {
@@ -202,7 +236,7 @@ const FootContacts& ContactDetector::Update(const FootPoints& points,
   PerFootPoint<double> speeds = {};
   for (auto& foot : velocities) foot.fill(Eigen::Vector3d::Zero());
   if (!is_first) {
-    const Moment& start = WindowStart();
+    const Moment& start = history_[WindowStart()];
     const double scale = 1 / ((time_s_ - start.time_s) * size_);
     for (int side = 0; side < 2; ++side) {
       for (int point = 0; point < kFootPointCount; ++point) {

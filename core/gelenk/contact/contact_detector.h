@@ -18,6 +18,7 @@
 
 #include "gelenk/contact/foot_points.h"
 #include "gelenk/contact/ground.h"
+#include "gelenk/math/state_numbers.h"
 
 namespace gelenk {
 
@@ -60,6 +61,10 @@ class FootContactState {
     return contacts_;
   }
 
+  void Exchange(StateNumbers& state) {
+    for (Contact& contact : contacts_) state.Choice(contact, Contact::kTurning);
+  }
+
  private:
   void FindTurning(
       const ContactThresholds& thresholds,
@@ -86,6 +91,10 @@ class ContactDetector {
   double FloorAt(const Eigen::Vector3d& point) const;
   void Reset();
 
+  // All that later frames depend on: of the frames so far those that speeds are
+  // measured from.
+  void Exchange(StateNumbers& state);
+
  private:
   // Frames of the speed's window; more than that at a kilohertz are thinned
   // out.
@@ -96,8 +105,12 @@ class ContactDetector {
     FootPoints points;
   };
 
-  // The latest frame that is a window old, or the oldest.
-  const Moment& WindowStart() const;
+  // Place in `history_` of the latest frame that is a window old, or of the
+  // oldest.
+  int WindowStart() const;
+  // How many of the latest frames there are up to WindowStart, which later
+  // frames never look behind.
+  int LiveCount() const;
   void Remember(const FootPoints& points);
   // Of a point in planted position above the estimated or known floor.
   double HeightOf(const FootPoints& points, int side, int point) const;

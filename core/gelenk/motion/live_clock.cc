@@ -101,6 +101,69 @@ LiveClock::LiveClock(std::shared_ptr<const Skeleton> skeleton,
       change_(error_),
       shown_(skeleton_->rest_positions()) {}
 
+void ClockOffset::Exchange(StateNumbers& state) {
+  state.Flag(has_any_);
+  if (!has_any_) return;
+  const auto exchange_number = [&state](int64_t& number) {
+    auto value = static_cast<double>(number);
+    state.Number(value);
+    number = static_cast<int64_t>(value);
+  };
+  for (int i = 0; i < kSlots; ++i) {
+    state.Number(minima_s_[i]);
+    exchange_number(slots_[i]);
+  }
+  exchange_number(newest_slot_);
+}
+
+void LiveClock::Reset() {
+  offset_ = ClockOffset(options_.window_s);
+  first_ = 0;
+  size_ = 0;
+  newest_number_ = -1;
+  has_frame_ = false;
+  shown_media_s_ = -INFINITY;
+  was_missing_ = false;
+  is_fading_ = false;
+}
+
+void LiveClock::Exchange(StateNumbers& state) {
+  state.Flag(has_frame_);
+  if (!has_frame_) return;
+  offset_.Exchange(state);
+  state.Count(size_, 1, options_.capacity);
+  if (!state.ok()) return;
+  if (state.is_reading()) first_ = 0;
+  for (int i = 0; i < size_; ++i) {
+    Slot& slot = slots_[At(i)];
+    // Numbers tell nothing but the order.
+    if (state.is_reading()) slot.sequence_number = i;
+    state.Number(slot.capture_s);
+    ExchangePose(poses_.col(At(i)), state);
+  }
+  if (state.is_reading()) newest_number_ = size_ - 1;
+  state.Number(newest_capture_s_);
+  bool has_shown = shown_media_s_ > -INFINITY;
+  state.Flag(has_shown);
+  if (has_shown) {
+    if (state.is_reading()) shown_media_s_ = 0;
+    state.Number(shown_media_s_);
+  }
+  state.Flag(was_missing_);
+  state.Flag(is_fading_);
+  if (was_missing_) ExchangePose(shown_, state);
+  if (!is_fading_) return;
+  state.Numbers(error_);
+  state.Number(error_s_);
+}
+
+void LiveClock::ExchangePose(VectorView positions, StateNumbers& state) {
+  state.Numbers(positions);
+  if (!state.is_reading() || !state.ok()) return;
+  const absl::Status status = CheckPositions(*skeleton_, positions);
+  if (!status.ok()) state.Refuse(status.message());
+}
+
 void LiveClock::PopFront() {
   first_ = At(1);
   --size_;
@@ -177,6 +240,9 @@ LiveStatus LiveClock::ShowLate(double beyond_s, VectorView positions) {
   status.state = LiveStatus::State::kEasing;
   if (options_.rest.size() > 0) {
     Difference(*skeleton_, positions, options_.rest, change_);
+    if (options_.keeps_root) {
+      change_.head(VelocityCount(skeleton_->joint(0).type)).setZero();
+    }
     change_ *= SmoothStep(easing_s / options_.ease_s);
     Integrate(*skeleton_, positions, change_, positions);
   }

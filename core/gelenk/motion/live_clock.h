@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "gelenk/math/state_numbers.h"
 #include "gelenk/skeleton/pose.h"
 #include "gelenk/skeleton/skeleton.h"
 
@@ -43,6 +44,8 @@ class ClockOffset {
 
   // arrival - capture of the fastest frame; unset before the first.
   std::optional<double> offset_s() const;
+
+  void Exchange(StateNumbers& state);
 
  private:
   static constexpr int kSlots = 8;
@@ -74,6 +77,8 @@ struct LiveClockOptions {
   double ease_s = 0.3;
   // Empty: where the extrapolation ended.
   Eigen::VectorXd rest = {};
+  // The root, or what stands for it, does not go to rest: it stays.
+  bool keeps_root = false;
   // Frames waiting to be shown, at least 2; the oldest give way.
   int capacity = 64;
 };
@@ -110,6 +115,15 @@ class LiveClock {
   // left alone while the state is kEmpty.
   LiveStatus Sample(double now_s, VectorView positions);
 
+  // The next frame is a first one, by other clocks.
+  void Reset();
+
+  // All that later samples depend on; what they count as late and what is
+  // counted begin anew. See StateNumbers.
+  void Exchange(StateNumbers& state);
+  // What the number of the next frame may be.
+  int64_t next_number() const { return newest_number_ + 1; }
+
   int64_t out_of_order_count() const { return out_of_order_count_; }
   // Frames that came after they should have been shown.
   int64_t late_count() const { return late_count_; }
@@ -124,6 +138,7 @@ class LiveClock {
   LiveClock(std::shared_ptr<const Skeleton> skeleton, LiveClockOptions options);
   int At(int index) const { return (first_ + index) % options_.capacity; }
   void PopFront();
+  void ExchangePose(VectorView positions, StateNumbers& state);
   // Whether a frame should have come `beyond_s` after the last.
   bool IsMissing(double beyond_s) const;
   // The motion of the last two frames, `beyond_s` after the last.

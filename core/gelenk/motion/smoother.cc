@@ -54,6 +54,22 @@ void Smoother::Reset() {
   latency_s_ = 0;
 }
 
+void Smoother::Exchange(StateNumbers& state) {
+  state.Flag(has_pushed_);
+  if (has_pushed_) state.Number(pushed_time_s_);
+  state.Flag(has_smooth_);
+  if (!has_smooth_) return;
+  for (Eigen::VectorXd* pose : {&smooth_, &last_}) {
+    state.Numbers(*pose);
+    if (!state.is_reading() || !state.ok()) continue;
+    const absl::Status status = CheckPositions(*skeleton_, *pose);
+    if (!status.ok()) state.Refuse(status.message());
+  }
+  state.Numbers(velocity_);
+  state.Number(last_time_s_);
+  state.Number(latency_s_);
+}
+
 bool Smoother::PassWindow(double time_s, const ConstVectorView& positions) {
   if (!options_.hampel) {
     middle_ = positions;

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "gelenk/math/state_numbers.h"
 #include "gelenk/motion/hampel.h"
 #include "gelenk/motion/pose_part.h"
 #include "gelenk/skeleton/pose.h"
@@ -57,6 +58,10 @@ class Smoother {
 
   // Forgets everything; keeps its memory.
   void Reset();
+
+  // All that later outputs depend on, but for a window of outliers, which
+  // begins anew. See StateNumbers.
+  void Exchange(StateNumbers& state);
 
  private:
   Smoother(std::shared_ptr<const Skeleton> skeleton,

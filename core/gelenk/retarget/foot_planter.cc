@@ -89,6 +89,26 @@ Quaterniond LiftToe(const FootOnGround& foot, const Vector3d& ball,
       .normalized();
 }
 
+void ToePlanter::Exchange(StateNumbers& state) {
+  state.Flag(tip_is_held_);
+  if (tip_is_held_) state.Vector(tip_);
+  state.Rotation(turned_);
+  state.Flag(is_first_);
+}
+
+void FootPlanter::Exchange(StateNumbers& state) {
+  for (Lock& lock : locks_) {
+    state.Flag(lock.is_on);
+    if (!lock.is_on) continue;
+    state.Vector(lock.place);
+    state.Number(lock.age_s);
+  }
+  toe_.Exchange(state);
+  state.Vector(moved_);
+  state.Rotation(turned_);
+  state.Flag(is_first_);
+}
+
 void FootPlanter::UpdateLock(int point, bool in_contact, const FootPose& goal,
                              const FootPose& pose, double dt_s) {
   Lock& lock = locks_[point];

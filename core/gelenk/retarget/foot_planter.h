@@ -15,6 +15,7 @@
 
 #include "gelenk/contact/contact_detector.h"
 #include "gelenk/contact/ground.h"
+#include "gelenk/math/state_numbers.h"
 #include "gelenk/retarget/body_model.h"
 
 namespace gelenk {
@@ -62,6 +63,8 @@ class ToePlanter {
     is_first_ = true;
   }
 
+  void Exchange(StateNumbers& state);
+
   // What the foot does below the toe.
   struct Foot {
     // How far it is turned beside its goal.
@@ -102,6 +105,8 @@ class FootPlanter {
     toe_.Reset();
     is_first_ = true;
   }
+
+  void Exchange(StateNumbers& state);
 
   // Where the foot is to be, given where it would be. Allocates nothing.
   FootPose Plant(const FootPose& goal,

@@ -3,7 +3,7 @@
 //
 // Starting from the copied rotations the limb is turned by the shortest
 // rotation onto the new direction of its end, then bent in its plane. A
-// straight limb has // no plane: its normal is kept in the frame of the upper
+// straight limb has no plane: its normal is kept in the frame of the upper
 // bone and renewed as strongly as the limb is bent, at a limited speed; without
 // that memory straight elbows and knees flip by 40 degrees in a frame. Limbs
 // that bend backwards a little are noise; those that bend backwards much are
@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "gelenk/math/state_numbers.h"
 #include "gelenk/retarget/body_model.h"
 
 namespace gelenk {
@@ -44,6 +45,11 @@ class LimbBend {
   void Reset() {
     normal_ = hinge_;
     is_first_ = true;
+  }
+
+  void Exchange(StateNumbers& state) {
+    state.Vector(normal_);
+    state.Flag(is_first_);
   }
 
   // Turns the bones so that the end comes to `goal`, or as near as it can.

@@ -34,6 +34,14 @@ void LimbPlacement::Reset() {
   }
 }
 
+void LimbPlacement::Exchange(StateNumbers& state) {
+  pelvis_shift_.Exchange(state);
+  for (int side : kSides) {
+    if (legs_[side]) legs_[side]->Exchange(state);
+    if (arms_[side]) arms_[side]->Exchange(state);
+  }
+}
+
 void LimbPlacement::PlaceLimb(BodyRole upper, BodyRole middle, BodyRole end,
                               const Vector3d& goal, double dt_s, LimbBend& bend,
                               RigPose& rig) {

@@ -28,6 +28,7 @@ class LimbPlacement {
   explicit LimbPlacement(std::shared_ptr<const BodyModel> target);
 
   void Reset();
+  void Exchange(StateNumbers& state);
 
   // Moves `rig`, which has the copied pose, to the goals: first the pelvis, so
   // that the legs reach, then legs and arms. Feet, toes and hands keep their

@@ -50,11 +50,12 @@ bool IsEnd(BodyRole role) {
 
 LimitKeeper::LimitKeeper(std::shared_ptr<const BodyModel> target,
                          IkProblem problem, std::vector<PartGoal> parts,
-                         bool solves_every_frame)
+                         bool solves_every_frame, InstructionSet level)
     : target_(std::move(target)),
       problem_(std::move(problem)),
       parts_(std::move(parts)),
       solves_every_frame_(solves_every_frame),
+      solver_(level),
       posture_target_(target_->reference.positions),
       last_(target_->reference.positions) {
   const auto joints = target_->skeleton->joints();
@@ -65,7 +66,7 @@ LimitKeeper::LimitKeeper(std::shared_ptr<const BodyModel> target,
 }
 
 absl::StatusOr<LimitKeeper> LimitKeeper::Create(
-    std::shared_ptr<const BodyModel> target) {
+    std::shared_ptr<const BodyModel> target, InstructionSet level) {
   const JointMap& map = target->map;
   const Skeleton& skeleton = *target->skeleton;
   std::vector<Goal> goals;
@@ -117,7 +118,21 @@ absl::StatusOr<LimitKeeper> LimitKeeper::Create(
       IkProblem::Create(target->skeleton, std::move(goals));
   if (!problem.ok()) return problem.status();
   return LimitKeeper(std::move(target), *std::move(problem), std::move(parts),
-                     solves_every_frame);
+                     solves_every_frame, level);
+}
+
+void LimitKeeper::Reset() {
+  last_ = target_->reference.positions;
+  is_first_ = true;
+}
+
+void LimitKeeper::Exchange(StateNumbers& state) {
+  if (!solves_every_frame_) return;
+  state.Flag(is_first_);
+  state.Numbers(last_);
+  if (!state.is_reading() || !state.ok()) return;
+  const absl::Status status = CheckPositions(*target_->skeleton, last_);
+  if (!status.ok()) state.Refuse(status.message());
 }
 
 void LimitKeeper::AimParts(const RigPose& rig, const ConstVectorView& posture) {

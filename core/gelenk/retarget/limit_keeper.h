@@ -15,6 +15,7 @@
 
 #include "absl/status/statusor.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "gelenk/math/state_numbers.h"
 #include "gelenk/retarget/body_model.h"
 #include "gelenk/retarget/rig_pose.h"
 #include "gelenk/skeleton/pose.h"
@@ -23,11 +24,13 @@ namespace gelenk {
 
 class LimitKeeper {
  public:
-  // Errors: none that a body model of a valid skeleton can cause; passed on.
+  // Solves at `level`. Errors: none that a body model of a valid skeleton can
+  // cause; passed on.
   static absl::StatusOr<LimitKeeper> Create(
-      std::shared_ptr<const BodyModel> target);
+      std::shared_ptr<const BodyModel> target, InstructionSet level);
 
-  void Reset() { is_first_ = true; }
+  void Reset();
+  void Exchange(StateNumbers& state);
 
   // Whether roles hang on single axes: then every frame is solved.
   bool SolvesEveryFrame() const { return solves_every_frame_; }
@@ -45,7 +48,8 @@ class LimitKeeper {
   };
 
   LimitKeeper(std::shared_ptr<const BodyModel> target, IkProblem problem,
-              std::vector<PartGoal> parts, bool solves_every_frame);
+              std::vector<PartGoal> parts, bool solves_every_frame,
+              InstructionSet level);
 
   void AimParts(const RigPose& rig, const ConstVectorView& posture);
   void Solve(VectorView positions);

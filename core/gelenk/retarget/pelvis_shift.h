@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "gelenk/math/state_numbers.h"
 #include "gelenk/retarget/body_model.h"
 
 namespace gelenk {
@@ -15,6 +16,7 @@ class PelvisShift {
   explicit PelvisShift(const std::array<LimbLengths, 2>& legs) : legs_(legs) {}
 
   void Reset() { shift_.setZero(); }
+  void Exchange(StateNumbers& state) { state.Vector(shift_); }
 
   // The way to move the pelvis by in this frame, smoothed over time. `hips` and
   // `ankles` are those of the copied pose: legs that are straight there stay

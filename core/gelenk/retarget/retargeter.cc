@@ -15,8 +15,6 @@ namespace {
 
 // How fast the body follows the ground that it walks over, s.
 constexpr double kGroundTime_s = 0.2;
-// Longer gaps between frames than this are not motion, s.
-constexpr double kMaxFrameTime_s = 10;
 
 bool HaveSomethingInCommon(const JointMap& a, const JointMap& b) {
   for (int i = 0; i < kBodyRoleCount; ++i) {
@@ -34,7 +32,8 @@ absl::StatusOr<std::unique_ptr<Retargeter>> Retargeter::Create(
     return absl::InvalidArgumentError(
         "joint_map: source and target have no role in common");
   }
-  absl::StatusOr<LimitKeeper> limits = LimitKeeper::Create(target);
+  absl::StatusOr<LimitKeeper> limits =
+      LimitKeeper::Create(target, options.instruction_set);
   if (!limits.ok()) return limits.status();
   return absl::WrapUnique(new Retargeter(std::move(source), std::move(target),
                                          options, *std::move(limits)));
@@ -53,7 +52,7 @@ Retargeter::Retargeter(std::shared_ptr<const BodyModel> source,
       checked_(source_->skeleton->position_count()),
       detector_({source_->planted_heights, source_->leg_length},
                 options.source_ground, options.contact_thresholds),
-      transfer_(source_, target_),
+      transfer_(source_, target_, options.root_scale),
       rig_(target_),
       placement_(target_),
       limits_(std::move(limits)),
@@ -78,6 +77,21 @@ void Retargeter::Reset() {
     if (planters_[side]) planters_[side]->Reset();
   }
   is_first_ = true;
+}
+
+void Retargeter::Exchange(StateNumbers& state) {
+  state.Flag(is_first_);
+  if (is_first_) {
+    if (state.is_reading()) Reset();
+    return;
+  }
+  detector_.Exchange(state);
+  placement_.Exchange(state);
+  limits_.Exchange(state);
+  for (int side : kSides) {
+    if (planters_[side]) planters_[side]->Exchange(state);
+  }
+  state.Number(ground_m_);
 }
 
 absl::Status Retargeter::Retarget(const ConstVectorView& source_positions,
@@ -129,7 +143,7 @@ Quaterniond Retargeter::ToeGoal(const FootPose& foot, int side) const {
 }
 
 double Retargeter::FollowGround(const BodyPose& source, double dt_s) {
-  const Vector3d below = transfer_.scale() * source.hip_center;
+  const Vector3d below = transfer_.root_scale() * source.hip_center;
   const double height = ground_->HeightAt(below);
   ground_m_ = is_first_ ? height
                         : ground_m_ + (height - ground_m_) *

@@ -26,6 +26,8 @@
 #include "absl/status/statusor.h"
 #include "gelenk/contact/contact_detector.h"
 #include "gelenk/contact/ground.h"
+#include "gelenk/ik/instruction_set.h"
+#include "gelenk/math/state_numbers.h"
 #include "gelenk/retarget/body_model.h"
 #include "gelenk/retarget/body_pose.h"
 #include "gelenk/retarget/foot_planter.h"
@@ -46,6 +48,11 @@ struct RetargetOptions {
   bool plant_feet = true;
   bool keep_limits = true;
   ContactThresholds contact_thresholds;
+  // Way over the ground of the target for a way 1 of the source, > 0; unset: as
+  // much as its legs are longer.
+  std::optional<double> root_scale;
+  // What solves where joint limits are broken.
+  InstructionSet instruction_set = BestInstructionSet();
 };
 
 // What a frame took.
@@ -64,6 +71,9 @@ struct RetargetReport {
 
 class Retargeter {
  public:
+  // Longer gaps between frames than this are not motion.
+  static constexpr double kMaxFrameTime_s = 10;
+
   // Errors: INVALID_ARGUMENT when source and target have nothing in common.
   static absl::StatusOr<std::unique_ptr<Retargeter>> Create(
       std::shared_ptr<const BodyModel> source,
@@ -104,6 +114,16 @@ class Retargeter {
 
   // Forgets what was before: the next frame is a first one.
   void Reset();
+
+  // What the next frame depends on beside positions(). Given to a retargeter of
+  // the same models and options with the same positions (checked), the frames
+  // after it are the same bit by bit, on the same instruction set. While
+  // reading stops at a number that is wrong, the rest is of no use: see
+  // StateNumbers.
+  void Exchange(StateNumbers& state);
+  void SetPositions(const ConstVectorView& positions) {
+    positions_ = positions;
+  }
 
   const Ground& ground() const { return *ground_; }
   const BodyModel& source() const { return *source_; }

@@ -23,10 +23,12 @@ bool Contains(const std::vector<int>& chain, int joint) {
 }  // namespace
 
 RotationTransfer::RotationTransfer(std::shared_ptr<const BodyModel> source,
-                                   std::shared_ptr<const BodyModel> target)
+                                   std::shared_ptr<const BodyModel> target,
+                                   std::optional<double> root_scale)
     : source_(std::move(source)),
       target_(std::move(target)),
-      scale_(target_->leg_length / source_->leg_length) {
+      scale_(target_->leg_length / source_->leg_length),
+      root_scale_(root_scale.value_or(scale_)) {
   const JointMap& map = target_->map;
   for (size_t i = 0; i < map.spine.size(); ++i) {
     spine_.push_back({map.spine[i], PlaceOnChain(source_->spine_fractions,
@@ -64,10 +66,10 @@ Vector3d RotationTransfer::PelvisPlace(const BodyPose& source,
                                        double target_floor_m) const {
   const Vector3d& from = source.hip_center;
   const Vector3d hip_center(
-      scale_ * from.x(),
+      root_scale_ * from.x(),
       scale_ * (from.y() - source_floor_m - source_ankle_) + target_ankle_ +
           target_floor_m,
-      scale_ * from.z());
+      root_scale_ * from.z());
   return hip_center - pelvis * pelvis_from_hip_center_;
 }
 

@@ -5,6 +5,7 @@
 #define GELENK_RETARGET_ROTATION_TRANSFER_H_
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gelenk/retarget/body_model.h"
@@ -16,8 +17,11 @@ namespace gelenk {
 
 class RotationTransfer {
  public:
+  // `root_scale` is the way over the ground in the target for a way 1 in the
+  // source; by the legs when unset.
   RotationTransfer(std::shared_ptr<const BodyModel> source,
-                   std::shared_ptr<const BodyModel> target);
+                   std::shared_ptr<const BodyModel> target,
+                   std::optional<double> root_scale = std::nullopt);
 
   // Turns and places `rig`, which is of the target. `source_floor_m` and
   // `target_floor_m` are the heights of the ground under the bodies. Allocates
@@ -25,8 +29,8 @@ class RotationTransfer {
   void Apply(const BodyPose& source, double source_floor_m,
              double target_floor_m, RigPose& rig) const;
 
-  // Length in the target of a length 1 in the source.
-  double scale() const { return scale_; }
+  // Way over the ground in the target for a way 1 in the source.
+  double root_scale() const { return root_scale_; }
 
  private:
   struct RoleTurn {
@@ -45,7 +49,9 @@ class RotationTransfer {
 
   std::shared_ptr<const BodyModel> source_;
   std::shared_ptr<const BodyModel> target_;
+  // Of heights: the length in the target of a length 1 in the source.
   double scale_;
+  double root_scale_;
   double source_ankle_ = 0;
   double target_ankle_ = 0;
   // The middle between the target's thighs in the pelvis' joint frame.

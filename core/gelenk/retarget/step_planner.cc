@@ -29,6 +29,21 @@ double TurnBetween(double from, double to) {
 
 }  // namespace
 
+void StepPlanner::Exchange(StateNumbers& state) {
+  state.Flag(is_first_);
+  if (is_first_) return;
+  for (int side : kSides) {
+    feet_[side].Exchange(state);
+    Step& step = steps_[side];
+    state.Flag(step.is_on);
+    if (!step.is_on) continue;
+    state.Number(step.time_s);
+    step.from.Exchange(state);
+  }
+  state.Vector(last_hips_);
+  state.Vector(velocity_);
+}
+
 SteppingFoot StepPlanner::Home(int side, const Vector3d& hips,
                                double yaw_rad) const {
   const double out = side == kLeft ? half_width_m_ : -half_width_m_;

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "gelenk/math/state_numbers.h"
 #include "gelenk/retarget/body_role.h"
 
 namespace gelenk {
@@ -15,6 +16,11 @@ namespace gelenk {
 struct SteppingFoot {
   Eigen::Vector3d ankle = Eigen::Vector3d::Zero();
   double yaw_rad = 0;
+
+  void Exchange(StateNumbers& state) {
+    state.Vector(ankle);
+    state.Number(yaw_rad);
+  }
 };
 
 class StepPlanner {
@@ -32,6 +38,7 @@ class StepPlanner {
                                             double yaw_rad, double dt_s);
 
   void Reset() { is_first_ = true; }
+  void Exchange(StateNumbers& state);
 
  private:
   struct Step {

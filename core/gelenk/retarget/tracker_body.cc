@@ -81,7 +81,7 @@ Eigen::VectorXd RelaxedPositions(const BodyModel& model) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<TrackerBody>> TrackerBody::Create(
-    double height_m) {
+    double height_m, InstructionSet level) {
   if (!(height_m >= kMinHeight && height_m <= kMaxHeight)) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "height_m: want %g to %g, got %g", kMinHeight, kMaxHeight, height_m));
@@ -116,13 +116,14 @@ absl::StatusOr<std::unique_ptr<TrackerBody>> TrackerBody::Create(
       IkProblem::Create(skeleton, std::move(goals));
   if (!problem.ok()) return problem.status();
   return absl::WrapUnique(
-      new TrackerBody(*std::move(model), *std::move(problem)));
+      new TrackerBody(*std::move(model), *std::move(problem), level));
 }
 
 TrackerBody::TrackerBody(std::shared_ptr<const BodyModel> model,
-                         IkProblem problem)
+                         IkProblem problem, InstructionSet level)
     : model_(std::move(model)),
       problem_(std::move(problem)),
+      solver_(level),
       steps_(0, 0, 1),
       relaxed_(RelaxedPositions(*model_)),
       positions_(relaxed_) {
@@ -146,6 +147,30 @@ void TrackerBody::Reset() {
   steps_.Reset();
   yaw_rad_ = 0;
   is_first_ = true;
+}
+
+void TrackerBody::Exchange(StateNumbers& state) {
+  state.Flag(is_first_);
+  if (is_first_) {
+    if (state.is_reading()) Reset();
+    return;
+  }
+  state.Numbers(positions_);
+  for (std::optional<RigidTransform>& part : waist_from_part_) {
+    bool is_known = part.has_value();
+    state.Flag(is_known);
+    if (!is_known) {
+      part.reset();
+      continue;
+    }
+    if (!part) part.emplace();
+    state.Place(*part);
+  }
+  steps_.Exchange(state);
+  state.Number(yaw_rad_);
+  if (!state.is_reading() || !state.ok()) return;
+  const absl::Status status = CheckPositions(*model_->skeleton, positions_);
+  if (!status.ok()) state.Refuse(status.message());
 }
 
 TrackerBody::Parts TrackerBody::PartsOf(const TrackerFrame& frame) {

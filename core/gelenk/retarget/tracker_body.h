@@ -23,6 +23,7 @@
 #include "absl/status/statusor.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/math/rigid_transform.h"
+#include "gelenk/math/state_numbers.h"
 #include "gelenk/retarget/body_model.h"
 #include "gelenk/retarget/humanoid.h"
 #include "gelenk/retarget/step_planner.h"
@@ -42,7 +43,8 @@ class TrackerBody {
   // Errors: INVALID_ARGUMENT naming a `height_m` that is not of a person
   // (0.5 to 3).
   static absl::StatusOr<std::unique_ptr<TrackerBody>> Create(
-      double height_m = kHumanoidHeightM);
+      double height_m = kHumanoidHeightM,
+      InstructionSet level = BestInstructionSet());
 
   TrackerBody(const TrackerBody&) = delete;
   TrackerBody& operator=(const TrackerBody&) = delete;
@@ -67,13 +69,20 @@ class TrackerBody {
 
   void Reset();
 
+  // Whether there is a head to hang the body on, now or in memory.
+  bool KnowsHead() const { return waist_from_part_[kHead].has_value(); }
+
+  // All that later frames depend on; see Retargeter::Exchange.
+  void Exchange(StateNumbers& state);
+
  private:
   // In the order of the goals.
   enum Part { kHead, kLeftHand, kRightHand, kWaist, kLeftFoot, kRightFoot };
   static constexpr int kPartCount = 6;
   using Parts = std::array<std::optional<RigidTransform>, kPartCount>;
 
-  TrackerBody(std::shared_ptr<const BodyModel> model, IkProblem problem);
+  TrackerBody(std::shared_ptr<const BodyModel> model, IkProblem problem,
+              InstructionSet level);
 
   static Parts PartsOf(const TrackerFrame& frame);
   // Where hips that are not tracked should be.

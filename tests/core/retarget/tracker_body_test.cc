@@ -5,48 +5,19 @@
 #include <limits>
 
 #include "gelenk/math/rotation.h"
-#include "gelenk/retarget/retarget_clip.h"
-#include "tests/testing/body_clips.h"
+#include "gelenk/retarget/retargeter.h"
 #include "tests/testing/rig_family.h"
 #include "tests/testing/status_matchers.h"
-#include "tests/testing/walking_bvh.h"
+#include "tests/testing/tracked_actor.h"
 
 namespace gelenk {
 namespace {
 
+using testing::Actor;
+using testing::TrackersOn;
+using testing::WalkingActor;
+
 constexpr double kFrameTime = 0.02;
-
-// What trackers in the joints of a body see.
-TrackerFrame TrackersOn(const BodyModel& model,
-                        const Eigen::VectorXd& positions, bool with_lower) {
-  WorldTransforms at;
-  ForwardKinematics(*model.skeleton, positions, at);
-  const auto part = [&](BodyRole role) { return at[model.map.joint(role)]; };
-  TrackerFrame frame;
-  frame.head = part(BodyRole::kHead);
-  frame.hands = {part(BodyRole::kLeftHand), part(BodyRole::kRightHand)};
-  if (!with_lower) return frame;
-  frame.waist = part(BodyRole::kPelvis);
-  frame.feet = {part(BodyRole::kLeftFoot), part(BodyRole::kRightFoot)};
-  return frame;
-}
-
-// The walk of the fixture on the humanoid: an actor to be tracked.
-struct Actor {
-  std::shared_ptr<const BodyModel> model;
-  Eigen::MatrixXd positions;
-};
-Actor WalkingActor(int frames) {
-  const auto clip =
-      testing::BodyClipFromBvh(testing::WalkingBvh(frames), "walk");
-  const auto skeleton = MakeHumanoid();
-  Actor actor;
-  actor.model = *MakeBodyModel(skeleton, *ProposeJointMap(*skeleton));
-  actor.positions = RetargetClip(clip->model, actor.model, clip->positions,
-                                 clip->frame_time_s)
-                        ->positions;
-  return actor;
-}
 
 double DistanceBetween(const TrackerFrame& a, const TrackerFrame& b,
                        bool with_lower) {
