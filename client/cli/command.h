@@ -39,6 +39,7 @@ Command AddMapCommand(CLI::App& app);
 Command AddPlayCommand(CLI::App& app);
 Command AddRetargetCommand(CLI::App& app);
 Command AddSessionsCommand(CLI::App& app);
+Command AddSkinCommand(CLI::App& app);
 Command AddTwoBoneCommand(CLI::App& app);
 Command AddTwoLinkCommand(CLI::App& app);
 Command AddWorkspaceCommand(CLI::App& app);

@@ -7,6 +7,10 @@
 namespace gelenk::cli {
 namespace {
 
+// What a connection sends at most: a mesh of this machine's own user may be
+// larger than what a server takes from anybody.
+constexpr int kMaxMessageBytes = 64 << 20;
+
 class HostedServer final : public LocalServer {
  public:
   explicit HostedServer(std::unique_ptr<server::Server> server)
@@ -23,6 +27,7 @@ class HostedServer final : public LocalServer {
 absl::StatusOr<std::unique_ptr<LocalServer>> LocalServer::Start() {
   server::ServerOptions options;
   options.listen = "127.0.0.1:0";
+  options.limits.max_message_bytes = kMaxMessageBytes;
   absl::StatusOr<std::unique_ptr<server::Server>> server =
       server::Server::Start(std::move(options));
   if (!server.ok()) return server.status();

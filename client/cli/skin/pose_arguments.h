@@ -1,0 +1,38 @@
+// Poses for a skin, as the command line gives them.
+#ifndef CLIENT_CLI_SKIN_POSE_ARGUMENTS_H_
+#define CLIENT_CLI_SKIN_POSE_ARGUMENTS_H_
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "gelenk/v1/skin_service.pb.h"
+
+namespace gelenk::cli {
+
+struct PoseArguments {
+  std::string pose;
+  std::string bvh_path;
+  std::optional<double> unit_m;
+  int first_frame = 0;
+  std::optional<int> frame_count;
+};
+
+// --pose, or --bvh with --unit, --first and --frames.
+void AddPoseOptions(CLI::App& app, PoseArguments* arguments);
+
+struct PoseList {
+  std::vector<v1::SkinPose> poses;
+  // Between two of them.
+  absl::Duration frame_time = absl::Seconds(1) / 30;
+};
+
+// Without any, none. Errors name the option or the file.
+absl::StatusOr<PoseList> PosesOf(const PoseArguments& arguments);
+
+}  // namespace gelenk::cli
+
+#endif  // CLIENT_CLI_SKIN_POSE_ARGUMENTS_H_
