@@ -10,6 +10,7 @@
 #include "client/cli/file_bytes.h"
 #include "client/cli/motion/body_file.h"
 #include "client/cli/motion/clip_writer.h"
+#include "client/cli/motion/motion_picture.h"
 #include "client/cli/motion/quality_text.h"
 #include "gelenk/formats/bvh_clip.h"
 #include "gelenk/motion/clip_frames.h"
@@ -29,6 +30,7 @@ struct ClipOptions {
   std::optional<double> unit_m;
   std::string reference_path;
   std::string out_path;
+  std::string picture_path;
   double cutoff_hz = 6;
   Format format = Format::kTable;
 };
@@ -49,7 +51,9 @@ absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
   if (!measured.ok()) return measured.status();
   *output += options.format == Format::kJson ? JsonText(MeasuredJson(*measured))
                                              : MeasuredText(*measured);
-  return absl::OkStatus();
+  if (options.picture_path.empty()) return absl::OkStatus();
+  return WriteMotionPicture(*body, reference ? &*reference : nullptr,
+                            options.picture_path);
 }
 
 std::string FramesLeftOutText(int count) {
@@ -138,6 +142,10 @@ Command AddClipCommand(CLI::App& app) {
                    "The motion that FILE was made from: its contacts count, "
                    "and ratios are printed")
       ->option_text("SOURCE.bvh");
+  options->measure
+      ->add_option("--picture", options->picture_path,
+                   "The motion as figures over time, with its contacts")
+      ->option_text("SVG");
   AddFormatOption(*options->measure, &options->format);
   options->smooth = AddStep(*clip, "smooth",
                             "Without tremor, and without delay", options.get());
@@ -155,7 +163,7 @@ Command AddClipCommand(CLI::App& app) {
   AddOut(*options->convert, options.get());
   clip->footer(
       "Examples:\n"
-      "  gelenk clip measure walk.bvh\n"
+      "  gelenk clip measure walk.bvh --picture walk.svg\n"
       "  gelenk clip smooth walk.bvh --cutoff 5 --out smooth.bvh\n"
       "  gelenk clip convert walk.bvh --out walk.glb");
   return {clip, [options](const GlobalOptions&, std::string* output) {

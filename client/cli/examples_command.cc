@@ -7,7 +7,9 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/command.h"
+#include "client/cli/examples/leg_example.h"
 #include "client/cli/file_bytes.h"
+#include "client/cli/picture/leg_picture.h"
 #include "client/cli/picture/tangent_picture.h"
 #include "client/cli/service.h"
 #include "client/cli/text/table.h"
@@ -26,7 +28,9 @@ constexpr int kPrintedIterates = 6;
 constexpr double kExactly = 1e-11;
 
 struct ExamplesOptions {
+  CLI::App* leg = nullptr;
   std::string folder;
+  std::string leg_folder = ".";
 };
 
 v1::Skeleton ChainOf(const Numbers& lengths, double x, double y) {
@@ -276,6 +280,39 @@ absl::Status PrintOneDimension(const ExamplesOptions& options,
   return absl::OkStatus();
 }
 
+// Needs no service: clips are the user's own.
+absl::Status RunLeg(const ExamplesOptions& options, std::string* output) {
+  const absl::StatusOr<LegExample> example = MakeLegExample();
+  if (!example.ok()) return example.status();
+  absl::StrAppend(output,
+                  "A leg animated by keys from the top down: hip, thigh, shin, "
+                  "foot\n");
+  Table table({{""}, {"keys", Align::kRight}, {"contacts", Align::kRight}});
+  const auto add = [&](absl::string_view name, int decimals, auto number) {
+    table.AddRow({std::string(name),
+                  Fixed(number(example->keyed.quality), decimals),
+                  Fixed(number(example->planted.quality), decimals)});
+  };
+  add("planted points slide, cm/s", 2,
+      [](const MotionQuality& q) { return q.skate.label_cm_s; });
+  add("the foot sinks, at most, mm", 2,
+      [](const MotionQuality& q) { return 1000 * q.penetration.max_m; });
+  absl::StrAppend(output, table.ToString());
+  const std::pair<const char*, std::string> pictures[] = {
+      {"leg_naive.svg", LegPictureSvg(*example, example->keyed,
+                                      "Keys alone: the foot slides and sinks")},
+      {"leg_contacts.svg", LegPictureSvg(*example, example->planted,
+                                         "The same keys, contacts kept")}};
+  for (const auto& [name, picture] : pictures) {
+    const std::string path = absl::StrCat(options.leg_folder, "/", name);
+    if (absl::Status status = WriteFile(path, picture); !status.ok()) {
+      return status;
+    }
+    absl::StrAppend(output, "picture: ", path, "\n");
+  }
+  return absl::OkStatus();
+}
+
 absl::Status RunExamples(const ExamplesOptions& options,
                          const GlobalOptions& globals, std::string* output) {
   const auto service = Service::Open(globals.server);
@@ -300,11 +337,23 @@ Command AddExamplesCommand(CLI::App& app) {
       ->add_option("--out", options->folder,
                    "Also writes the picture newton_1d.svg to this folder")
       ->option_text("DIR");
-  examples->footer("Example:\n  gelenk examples --out .");
-  return {examples,
-          [options](const GlobalOptions& globals, std::string* output) {
-            return RunExamples(*options, globals, output);
-          }};
+  options->leg = examples->add_subcommand(
+      "leg",
+      "Hip, knee and foot by keys alone, and with contacts: two pictures, and "
+      "how far the foot slides and sinks");
+  options->leg
+      ->add_option("--out", options->leg_folder,
+                   "Where leg_naive.svg and leg_contacts.svg go; default: here")
+      ->option_text("DIR");
+  examples->footer(
+      "Examples:\n"
+      "  gelenk examples --out .\n"
+      "  gelenk examples leg --out .");
+  return {
+      examples, [options](const GlobalOptions& globals, std::string* output) {
+        return options->leg->parsed() ? RunLeg(*options, output)
+                                      : RunExamples(*options, globals, output);
+      }};
 }
 
 }  // namespace gelenk::cli

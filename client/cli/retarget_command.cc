@@ -9,6 +9,7 @@
 #include "client/cli/command.h"
 #include "client/cli/motion/body_file.h"
 #include "client/cli/motion/clip_writer.h"
+#include "client/cli/motion/motion_picture.h"
 #include "client/cli/motion/quality_text.h"
 #include "client/cli/text/table.h"
 #include "gelenk/motion/clip_frames.h"
@@ -23,6 +24,7 @@ struct RetargetCommandOptions {
   std::string onto;
   std::string out_path;
   std::string map_path;
+  std::string picture_path;
   bool live = false;
   Format format = Format::kTable;
 };
@@ -93,12 +95,21 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
   made.frame_time_s = source->frame_time_s;
   const absl::StatusOr<Measured> measured = Measure(made, &*source);
   if (!measured.ok()) return measured.status();
+  std::vector<std::string> written = {options.out_path};
+  if (!options.picture_path.empty()) {
+    if (absl::Status status =
+            WriteMotionPicture(made, &*source, options.picture_path);
+        !status.ok()) {
+      return status;
+    }
+    written.push_back(options.picture_path);
+  }
   if (options.format == Format::kJson) {
     Json json = MeasuredJson(*measured);
     json["frames"] = positions->cols();
     json["source_notes"] = source->notes;
     json["target_notes"] = target->notes;
-    json["written"] = {options.out_path};
+    json["written"] = written;
     *output += JsonText(json);
     return absl::OkStatus();
   }
@@ -107,8 +118,10 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
       absl::StrAppend(output, body->name, ": ", note, "\n");
     }
   }
-  absl::StrAppend(output, MeasuredText(*measured), "wrote ", options.out_path,
-                  "\n");
+  absl::StrAppend(output, MeasuredText(*measured));
+  for (const std::string& path : written) {
+    absl::StrAppend(output, "wrote ", path, "\n");
+  }
   return absl::OkStatus();
 }
 
@@ -194,6 +207,10 @@ Command AddRetargetCommand(CLI::App& app) {
                    "Metres per unit of FILE; default: guessed")
       ->check(Positive())
       ->option_text("M");
+  retarget
+      ->add_option("--picture", options->picture_path,
+                   "Both motions as figures over time, with their contacts")
+      ->option_text("SVG");
   AddFormatOption(*retarget, &options->format);
   retarget->footer(
       "Example:\n  gelenk retarget walk.bvh --onto humanoid --out out.bvh");

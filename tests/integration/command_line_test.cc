@@ -51,6 +51,27 @@ TEST_P(ServedCommandTest, ExamplesAreThoseOfTheBooks) {
   EXPECT_THAT(Read(folder_ / "newton_1d.svg"), HasSubstr("</svg>"));
 }
 
+TEST_F(CommandLineTest, TheLegExampleSlidesByKeysAlone) {
+  const Ending ending = Run({"examples", "leg"});
+  EXPECT_EQ(ending.exit_code, 0) << ending.err;
+  EXPECT_THAT(ending.out, AllOf(HasSubstr("slide"), HasSubstr("sinks")));
+  for (const char* name : {"leg_naive.svg", "leg_contacts.svg"}) {
+    EXPECT_THAT(Read(folder_ / name), HasSubstr("</svg>")) << name;
+  }
+  EXPECT_NE(Run({"examples", "leg", "--out", "nowhere"}).exit_code, 0);
+}
+
+TEST_F(CommandLineTest, MotionIsDrawnWithItsContacts) {
+  const json made = RunJson({"retarget", "walk.bvh", "--onto", "humanoid",
+                             "--out", "out.bvh", "--picture", "both.svg"});
+  EXPECT_EQ(made["written"], json({"out.bvh", "both.svg"}));
+  EXPECT_THAT(Read(folder_ / "both.svg"), HasSubstr("</svg>"));
+  EXPECT_EQ(
+      Run({"clip", "measure", "walk.bvh", "--picture", "walk.svg"}).exit_code,
+      0);
+  EXPECT_THAT(Read(folder_ / "walk.svg"), HasSubstr("class=\"figure\""));
+}
+
 TEST_P(ServedCommandTest, DhTables) {
   v1::Skeleton arm;
   convert::ToProto(*gelenk::testing::PandaArm(), &arm);

@@ -107,6 +107,12 @@ std::vector<BodyPose> BodyPosesOf(const BodyModel& model,
   return poses;
 }
 
+ContactLabels ContactsOf(const BodyFile& body,
+                         absl::Span<const BodyPose> poses) {
+  return LabelContacts(FootPointsOf(poses), body.frame_time_s,
+                       FeetOf(*body.model));
+}
+
 absl::StatusOr<MapFile> ReadMapFile(const std::string& path) {
   const absl::StatusOr<std::string> bytes = ReadFile(path);
   if (!bytes.ok()) return bytes.status();

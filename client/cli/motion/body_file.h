@@ -42,6 +42,10 @@ absl::StatusOr<BodyFile> ReadBodyFile(
 std::vector<BodyPose> BodyPosesOf(const BodyModel& model,
                                   const Eigen::MatrixXd& positions);
 
+// Where its feet stand; the poses are its own.
+ContactLabels ContactsOf(const BodyFile& body,
+                         absl::Span<const BodyPose> poses);
+
 // Both maps as a file has them: {"source": [{"role", "joint"}], "target": ..}.
 struct MapFile {
   std::vector<JointMapOverride> source;

@@ -68,9 +68,7 @@ absl::StatusOr<Measured> Measure(const BodyFile& body,
   const BodyMotionView motion = {*body.model, poses, body.frame_time_s};
   Measured measured;
   if (reference == nullptr) {
-    const ContactLabels labels = LabelContacts(
-        FootPointsOf(poses), body.frame_time_s, FeetOf(*body.model));
-    measured.quality = MeasureMotion(motion, labels);
+    measured.quality = MeasureMotion(motion, ContactsOf(body, poses));
     return measured;
   }
   if (reference->positions.cols() != body.positions.cols() ||
@@ -85,9 +83,7 @@ absl::StatusOr<Measured> Measure(const BodyFile& body,
       BodyPosesOf(*reference->model, reference->positions);
   const BodyMotionView source = {*reference->model, source_poses,
                                  reference->frame_time_s};
-  const ContactLabels labels =
-      LabelContacts(FootPointsOf(source_poses), reference->frame_time_s,
-                    FeetOf(*reference->model));
+  const ContactLabels labels = ContactsOf(*reference, source_poses);
   const FlatGround ground;
   measured.source = MeasureMotion(source, labels);
   measured.quality = MeasureMotion(motion, labels, &ground);

@@ -128,18 +128,6 @@ Extent ExtentOf(const Figure& figure) {
   return extent;
 }
 
-absl::string_view BoneClass(BodyHalf half) {
-  switch (half) {
-    case BodyHalf::kTrunk:
-      return "bone trunk";
-    case BodyHalf::kLeft:
-      return "bone left";
-    case BodyHalf::kRight:
-      return "bone right";
-  }
-  return "bone";
-}
-
 // From the plane of figures to the picture.
 struct Placement {
   Point origin;

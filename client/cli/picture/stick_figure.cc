@@ -54,4 +54,16 @@ std::vector<Bone> BonesOf(const Skeleton& skeleton,
   return bones;
 }
 
+absl::string_view BoneClass(BodyHalf half) {
+  switch (half) {
+    case BodyHalf::kTrunk:
+      return "bone trunk";
+    case BodyHalf::kLeft:
+      return "bone left";
+    case BodyHalf::kRight:
+      return "bone right";
+  }
+  return "bone";
+}
+
 }  // namespace gelenk::cli

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "absl/strings/string_view.h"
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/motion/body_parts.h"
 #include "gelenk/skeleton/skeleton.h"
@@ -27,6 +28,9 @@ struct Bone {
 std::vector<Bone> BonesOf(const Skeleton& skeleton,
                           const std::vector<BodyHalf>& halves,
                           const WorldTransforms& world_from_joints);
+
+// How bones of that half look, see style.h.
+absl::string_view BoneClass(BodyHalf half);
 
 }  // namespace gelenk::cli
 

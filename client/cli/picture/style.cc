@@ -19,6 +19,14 @@ line, polyline { fill: none; stroke-linecap: round; stroke-linejoin: round; }
 .trunk { stroke: #4a525c; }
 .left { stroke: #2f6fb5; }
 .right { stroke: #d2691e; }
+.thin { stroke-width: 1.4; }
+.pale { stroke: #c3c8ce; }
+.earth { fill: #e4e2dd; }
+.slide { stroke: #d11f1f; stroke-width: 3; }
+.slide-end, .contact { fill: #d11f1f; }
+.turning { fill: none; stroke: #d11f1f; stroke-width: 1.2; }
+.left-fill { fill: #2f6fb5; }
+.right-fill { fill: #d2691e; }
 .ghost { stroke: #c9cdd2; stroke-width: 5; }
 .target { fill: none; stroke: #b0378a; stroke-width: 1.4; }
 .effector { fill: #b0378a; }
@@ -53,6 +61,13 @@ line, polyline { fill: none; stroke-linecap: round; stroke-linejoin: round; }
   .left, .path, .curve { stroke: #6ba6e8; }
   .right { stroke: #f0954f; }
   .ghost, .path-target { stroke: #3c434c; }
+  .pale { stroke: #3c434c; }
+  .earth { fill: #2a2825; }
+  .slide { stroke: #ff6b6b; }
+  .slide-end, .contact { fill: #ff6b6b; }
+  .turning { stroke: #ff6b6b; }
+  .left-fill { fill: #6ba6e8; }
+  .right-fill { fill: #f0954f; }
   .target, .tolerance { stroke: #e477c1; }
   .effector, .tolerance-label { fill: #e477c1; }
   .residual { stroke: #ff6b6b; }

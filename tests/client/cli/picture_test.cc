@@ -1,17 +1,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "client/cli/examples/leg_example.h"
 #include "client/cli/picture/camera.h"
+#include "client/cli/picture/contact_sheet.h"
 #include "client/cli/picture/figure_row.h"
+#include "client/cli/picture/leg_picture.h"
 #include "client/cli/picture/play_picture.h"
 #include "client/cli/picture/pose_picture.h"
 #include "client/cli/picture/stick_figure.h"
 #include "client/cli/picture/svg.h"
 #include "client/cli/picture/two_link_picture.h"
 #include "client/cli/picture/workspace_picture.h"
+#include "gelenk/retarget/humanoid.h"
 #include "gelenk/skeleton/planar_chain.h"
 #include "tests/client/cli/sample_playback.h"
 #include "tests/client/cli/well_formed_xml.h"
+#include "tests/testing/body_clips.h"
 
 namespace gelenk::cli {
 namespace {
@@ -205,6 +210,46 @@ TEST(TwoLinkPictureTest, TheOtherSolutionIsPale) {
   EXPECT_EQ(drawn["line.ghost"], 2);
   EXPECT_EQ(drawn["line.bone"], 2);
   EXPECT_EQ(drawn["circle.target"], 1);
+}
+
+constexpr double kFrameTime_s = 1.0 / 60;
+
+TEST(ContactSheetTest, ShowsEveryMotionAndWhereFeetStand) {
+  const auto skeleton = MakeHumanoid();
+  const auto model =
+      MakeBodyModel(skeleton, *ProposeJointMap(*skeleton)).value();
+  const Eigen::MatrixXd standing = skeleton->rest_positions().replicate(1, 30);
+  const auto poses = testing::BodyPosesOf(*model, standing);
+  const ContactLabels labels =
+      LabelContacts(FootPointsOf(poses), kFrameTime_s, FeetOf(*model));
+  const SheetMotion row = {"a < b", *model, standing, poses, labels.floor_m};
+  const auto one =
+      CountElements(ContactSheetSvg("one", {row}, labels, kFrameTime_s));
+  ASSERT_TRUE(one.ok()) << one.status();
+  EXPECT_EQ(one->at("g.figure"), kMostSheetFigures);
+  EXPECT_GT(one->at("circle.contact"), 0);
+  EXPECT_GT(one->at("rect.left-fill"), 0);
+  const SheetMotion rows[] = {row, row};
+  const auto two =
+      CountElements(ContactSheetSvg("two", rows, labels, kFrameTime_s));
+  ASSERT_TRUE(two.ok()) << two.status();
+  EXPECT_EQ(two->at("g.figure"), 2 * kMostSheetFigures);
+  EXPECT_EQ(two->at("line.bone"), 2 * one->at("line.bone"));
+}
+
+TEST(LegExampleTest, KeysAloneSlideAndSinkAndContactsDoNot) {
+  const auto example = MakeLegExample();
+  ASSERT_TRUE(example.ok()) << example.status();
+  EXPECT_GT(example->keyed.quality.skate.label_cm_s, 5);
+  EXPECT_GT(example->keyed.quality.penetration.max_m, 0.01);
+  EXPECT_LT(example->planted.quality.skate.label_cm_s, 0.1);
+  EXPECT_LT(example->planted.quality.penetration.max_m, 1e-4);
+  EXPECT_EQ(example->planted.quality.hyper_extended_frames, 0);
+  for (const LegMotion* motion : {&example->keyed, &example->planted}) {
+    const auto drawn = CountElements(LegPictureSvg(*example, *motion, "leg"));
+    ASSERT_TRUE(drawn.ok()) << drawn.status();
+    EXPECT_GT(drawn->at("polyline.slide"), 4);
+  }
 }
 
 }  // namespace
