@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "gelenk/contact/floor_rules.h"
@@ -15,6 +16,10 @@ constexpr double kFloorTime_s = 1;
 constexpr double kSinkTime_s = 0.05;
 constexpr double kBiasTime_s = 0.5;
 constexpr double kClearlyBelow = 0.03;
+// Noise below this is as good as none, m: what is left of fast motion looks
+// like it. Thresholds are this many deviations above the rest.
+constexpr double kNoNoise = 0.5e-3;
+constexpr double kNoiseMargin = 3;
 
 // The part of the way that an exponential approach goes in `dt_s`.
 double Approach(double dt_s, double time_s) {
@@ -86,6 +91,7 @@ void ContactDetector::Reset() {
   time_s_ = 0;
   floor_m_ = 0;
   bias_m_ = {};
+  noise_.Reset();
   states_ = {};
   contacts_ = {};
 }
@@ -143,6 +149,7 @@ void ContactDetector::Exchange(StateNumbers& state) {
   for (auto& foot : bias_m_) {
     for (double& bias : foot) state.Number(bias);
   }
+  noise_.Exchange(state);
   for (int side = 0; side < 2; ++side) {
     states_[side].Exchange(state);
     contacts_[side] = states_[side].contacts();
@@ -228,6 +235,19 @@ void ContactDetector::FollowFloor(const FootPoints& points,
   }
 }
 
+ContactThresholds ContactDetector::ThresholdsInNoise(double window_s) const {
+  const double noise = std::max(0.0, noise_.deviation_m() - kNoNoise * size_);
+  const double speed =
+      kNoiseMargin * std::numbers::sqrt2 * noise / (window_s * size_);
+  ContactThresholds thresholds = thresholds_;
+  for (double* most :
+       {&thresholds.max_speed_on, &thresholds.max_speed_off,
+        &thresholds.min_turning_speed_on, &thresholds.min_turning_speed_off}) {
+    *most += speed;
+  }
+  return thresholds;
+}
+
 const FootContacts& ContactDetector::Update(const FootPoints& points,
                                             double dt_s) {
   const bool is_first = history_count_ == 0;
@@ -235,8 +255,11 @@ const FootContacts& ContactDetector::Update(const FootPoints& points,
   PerFootPoint<Eigen::Vector3d> velocities;
   PerFootPoint<double> speeds = {};
   for (auto& foot : velocities) foot.fill(Eigen::Vector3d::Zero());
+  ContactThresholds thresholds = thresholds_;
+  noise_.Update(points, dt_s);
   if (!is_first) {
     const Moment& start = history_[WindowStart()];
+    thresholds = ThresholdsInNoise(time_s_ - start.time_s);
     const double scale = 1 / ((time_s_ - start.time_s) * size_);
     for (int side = 0; side < 2; ++side) {
       for (int point = 0; point < kFootPointCount; ++point) {
@@ -256,7 +279,7 @@ const FootContacts& ContactDetector::Update(const FootPoints& points,
       heights[point] =
           (HeightOf(points, side, point) - bias_m_[side][point]) / size_;
     }
-    states_[side].Update(thresholds_, heights, velocities[side],
+    states_[side].Update(thresholds, heights, velocities[side],
                          points[side][kBall] - points[side][kHeel]);
     contacts_[side] = states_[side].contacts();
   }

@@ -9,6 +9,9 @@
 // slow points are, and per point a bias from it, because virtual soles are
 // rarely flat. A running minimum would be 1 to 3 cm too low.
 //
+// A noisy stream has speeds of its own: thresholds rise above them
+// (PointNoise).
+//
 // Online: no look-ahead, no added latency. Offline: contact_labels.h.
 #ifndef GELENK_CONTACT_CONTACT_DETECTOR_H_
 #define GELENK_CONTACT_CONTACT_DETECTOR_H_
@@ -18,6 +21,7 @@
 
 #include "gelenk/contact/foot_points.h"
 #include "gelenk/contact/ground.h"
+#include "gelenk/contact/point_noise.h"
 #include "gelenk/math/state_numbers.h"
 
 namespace gelenk {
@@ -112,6 +116,8 @@ class ContactDetector {
   // frames never look behind.
   int LiveCount() const;
   void Remember(const FootPoints& points);
+  // Thresholds of speeds that are means over `window_s`, above the noise.
+  ContactThresholds ThresholdsInNoise(double window_s) const;
   // Of a point in planted position above the estimated or known floor.
   double HeightOf(const FootPoints& points, int side, int point) const;
   void StartFloor(const FootPoints& points);
@@ -128,6 +134,7 @@ class ContactDetector {
   double time_s_ = 0;
   double floor_m_ = 0;
   PerFootPoint<double> bias_m_ = {};
+  PointNoise noise_;
   std::array<FootContactState, 2> states_;
   FootContacts contacts_ = {};
 };

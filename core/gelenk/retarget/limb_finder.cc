@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <numeric>
 #include <string>
 
 #include "absl/strings/ascii.h"
@@ -25,6 +26,14 @@ constexpr Proportions kLegProportions = {0.98, 0.6};
 constexpr Proportions kArmProportions = {0.93, 0.3};
 
 constexpr double kSkippedJointScore = 0.3;
+// A ball on the straight line between its neighbours may share a bone's twist.
+constexpr double kStraightJointScore = 0.1;
+// Nearer than this part of its length to the trunk's joint a limb does not
+// begin: hips and shoulders are beside it, what is there is a helper.
+constexpr double kMinBeside = 0.02;
+constexpr double kNotBesideScore = 0.3;
+// How much longer the way over a joint is than the straight one, of the whole.
+constexpr double kMaxDetour = 1e-3;
 // Of equal pairs that nearer to the end.
 constexpr double kChainLengthScore = 0.001;
 constexpr double kLastHingeScore = 1e-4;
@@ -95,6 +104,17 @@ double LengthOf(absl::Span<const Eigen::Vector3d> points,
   return length;
 }
 
+bool IsStraight(const Skeleton& skeleton,
+                absl::Span<const Eigen::Vector3d> points,
+                absl::Span<const int> chain, size_t i) {
+  if (VelocityCount(skeleton.joint(chain[i]).type) == 1) return false;
+  const double before = (points[chain[i]] - points[chain[i - 1]]).norm();
+  const double behind = (points[chain[i + 1]] - points[chain[i]]).norm();
+  const double straight = (points[chain[i + 1]] - points[chain[i - 1]]).norm();
+  return before > 0 && behind > 0 &&
+         before + behind - straight <= kMaxDetour * straight;
+}
+
 }  // namespace
 
 std::vector<int> ChainBelow(const Skeleton& skeleton, int top, int end) {
@@ -123,6 +143,15 @@ std::optional<LimbJoints> FindLimb(const Skeleton& skeleton,
   const double total = LengthOf(points, chain, 0, last);
   if (!(total > 0)) return std::nullopt;
 
+  // What leaving a joint out of the limb costs.
+  std::vector<double> skipped(chain.size(), kSkippedJointScore);
+  for (size_t i = 1; i < last; ++i) {
+    if (IsTwist(skeleton, chain[i], names[i])) {
+      skipped[i] = 0;
+    } else if (IsStraight(skeleton, points, chain, i)) {
+      skipped[i] = kStraightJointScore;
+    }
+  }
   LimbJoints best;
   best.score = kMaxLimbScore;
   for (size_t i = 0; i + 1 < last; ++i) {
@@ -133,11 +162,15 @@ std::optional<LimbJoints> FindLimb(const Skeleton& skeleton,
       double score =
           std::abs(std::log(upper / lower * proportions.lower_by_upper)) +
           proportions.left_over_weight * (total - upper - lower) / total +
-          kSkippedJointScore * static_cast<double>(last - i - 2) +
+          std::accumulate(skipped.begin() + i + 1, skipped.begin() + last,
+                          -skipped[k]) +
           kChainLengthScore * static_cast<double>(last - i);
       score += kind == LimbKind::kLeg
                    ? LegNameScore(names[i], names[k])
                    : ArmNameScore(names[i], names[i + 1], names[k]);
+      if ((points[chain[i]] - points[top]).norm() < kMinBeside * total) {
+        score += kNotBesideScore;
+      }
       // Of several hinges at one place the last one moves the bone.
       if (VelocityCount(skeleton.joint(chain[k]).type) == 1) {
         score -= kLastHingeScore * static_cast<double>(k);

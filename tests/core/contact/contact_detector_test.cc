@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/core/contact/stepping_feet.h"
 
 namespace gelenk {
@@ -108,6 +110,41 @@ TEST(ContactDetectorTest, ThresholdsGrowWithTheLeg) {
   }
   EXPECT_EQ(man.contacts()[kLeft][kHeel], Contact::kNone);
   EXPECT_EQ(giant.contacts()[kLeft][kHeel], Contact::kPlanted);
+}
+
+// Noise of 2 mm is a speed of 0.15 m/s over two frames at 60 Hz.
+TEST(ContactDetectorTest, TremblingFeetStandAndStep) {
+  for (double frame_time : {1.0 / 30, 1.0 / 60, 1.0 / 120}) {
+    SCOPED_TRACE(frame_time);
+    ContactDetector detector({});
+    const FootPoints standing = OneStep(frame_time)[0];
+    const int settled = static_cast<int>(1 / frame_time);
+    const std::vector<Contact> heel = LeftHeel(
+        detector,
+        Trembling(std::vector<FootPoints>(10 * settled, standing), 2e-3),
+        frame_time);
+    EXPECT_EQ(std::count(heel.begin() + settled, heel.end(), Contact::kNone),
+              0);
+    detector.Reset();
+    const std::vector<Contact> step =
+        LeftHeel(detector, Trembling(OneStep(frame_time), 2e-3), frame_time);
+    EXPECT_EQ(step[static_cast<size_t>(1.25 / frame_time)], Contact::kNone);
+    EXPECT_NE(step.back(), Contact::kNone);
+  }
+}
+
+TEST(PointNoiseTest, TellsNoiseFromMotion) {
+  for (double frame_time : {1.0 / 30, 1.0 / 120}) {
+    for (double deviation : {0.0, 1e-3, 2e-3, 5e-3}) {
+      PointNoise noise;
+      // The right foot stands while the left one steps.
+      for (const FootPoints& frame :
+           Trembling(OneStep(frame_time), deviation)) {
+        noise.Update(frame, frame_time);
+      }
+      EXPECT_NEAR(noise.deviation_m(), deviation, 0.3 * deviation + 1e-9);
+    }
+  }
 }
 
 TEST(ContactDetectorTest, ResetForgets) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include "gelenk/contact/foot_points.h"
@@ -31,6 +32,21 @@ inline std::vector<FootPoints> OneStep(double frame_time_s,
     const Eigen::Vector3d heel(
         0.1, floor_m + 0.15 * std::sin(std::numbers::pi * part), 0.6 * eased);
     frames.push_back({FlatFoot(heel), FlatFoot({-0.1, floor_m, 0})});
+  }
+  return frames;
+}
+
+// The same with white noise of `deviation_m` along every axis, which all points
+// of a frame have in common, as when the root of a capture trembles.
+inline std::vector<FootPoints> Trembling(std::vector<FootPoints> frames,
+                                         double deviation_m) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, deviation_m);
+  for (FootPoints& frame : frames) {
+    const Eigen::Vector3d error(noise(random), noise(random), noise(random));
+    for (auto& foot : frame) {
+      for (Eigen::Vector3d& point : foot) point += error;
+    }
   }
   return frames;
 }

@@ -57,6 +57,73 @@ TEST(JointMapTest, FindsEveryRoleOfEveryFamily) {
   }
 }
 
+// `body` with a joint half way along every bone of its limbs.
+std::shared_ptr<const Skeleton> WithTwistBones(const Skeleton& body,
+                                               const RigFamily& family) {
+  SkeletonBuilder builder;
+  for (Joint joint : body.joints()) {
+    for (const auto* names : {&family.left, &family.right}) {
+      for (const size_t bone : {1, 2, 4, 5}) {
+        if (joint.parent_id != (*names)[bone] ||
+            joint.id != (*names)[bone + 1]) {
+          continue;
+        }
+        Joint twist = joint;
+        twist.id =
+            joint.parent_id + (family.family == "nameless" ? "b" : "_twist");
+        twist.parent_from_joint.translation /= 2;
+        joint.parent_id = twist.id;
+        joint.parent_from_joint.translation /= 2;
+        builder.AddJoint(twist);
+      }
+    }
+    builder.AddJoint(joint);
+  }
+  for (const EndEffector& end : body.end_effectors()) {
+    builder.AddEndEffector(end);
+  }
+  return *builder.Build();
+}
+
+TEST(JointMapTest, TwistBonesAreNoLimbs) {
+  for (const RigFamily& family : RigFamilies()) {
+    SCOPED_TRACE(family.family);
+    const auto body = BodyOf(family);
+    const auto skeleton = WithTwistBones(*body, family);
+    ASSERT_EQ(skeleton->joint_count(), body->joint_count() + 8);
+    const auto map = ProposeJointMap(*skeleton);
+    ASSERT_TRUE(map.ok()) << map.status();
+    ExpectSide(*map, *skeleton, family.left, kLeft);
+    ExpectSide(*map, *skeleton, family.right, kRight);
+  }
+}
+
+// Some conversions have joints without length where limbs leave the trunk.
+TEST(JointMapTest, AHelperInTheTrunkIsNoLimb) {
+  const RigFamily& family = RigFamilies().back();
+  ASSERT_EQ(family.family, "nameless");
+  SkeletonBuilder builder;
+  for (Joint joint : BodyOf(family)->joints()) {
+    if (joint.id == family.left[4] || joint.id == family.right[4]) {
+      Joint helper = joint;
+      helper.id = joint.id + "h";
+      helper.parent_from_joint.translation.setZero();
+      joint.parent_id = helper.id;
+      builder.AddJoint(helper);
+    }
+    // A short thigh: with the way to the hip it is as long as the shin.
+    if (joint.id == family.left[5] || joint.id == family.right[5]) {
+      joint.parent_from_joint.translation *= 0.75;
+    }
+    builder.AddJoint(joint);
+  }
+  const auto skeleton = *builder.Build();
+  const auto map = ProposeJointMap(*skeleton);
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kLeftThigh), family.left[4]);
+  EXPECT_EQ(JointOf(*map, *skeleton, BodyRole::kRightThigh), family.right[4]);
+}
+
 TEST(JointMapTest, OverridesWinAndMayTakeRolesAway) {
   const auto skeleton = MakeHumanoid();
   const auto map = ProposeJointMap(
