@@ -92,10 +92,7 @@ class MeshPainter {
       svg.Text({box.center().x(), box.bottom() - 11}, panels_[i].caption,
                "heading middle");
       DrawMesh(panels_[i], box, svg);
-      if (i == 0) {
-        DrawScaleBar(scale_, {box.left, box.top, box.width, panel_height_},
-                     svg);
-      }
+      if (i == 0) DrawScaleBar(scale_, box, svg);
     }
     return std::move(svg).Finish();
   }
