@@ -8,13 +8,12 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "gelenk/formats/unique_names.h"
 #include "gelenk/import/glb_container.h"
 #include "gelenk/import/gltf_accessor.h"
 #include "gelenk/import/gltf_json.h"
 #include "gelenk/import/gltf_mesh.h"
 #include "gelenk/import/gltf_placement.h"
-#include "gelenk/kinematics/forward_kinematics.h"
+#include "gelenk/import/joined_mesh.h"
 #include "gelenk/skeleton/joint_check.h"
 
 namespace gelenk {
@@ -40,13 +39,6 @@ constexpr absl::string_view kKeptBelow[] = {
 // Beyond single precision's rounding the last row of a matrix is no (0 0 0 1).
 constexpr double kAffine = 1e-5;
 
-// Two bindings of a joint are the same when vertices come out so near, as a
-// part of the mesh's size.
-constexpr double kSameBinding = 1e-5;
-
-// Below that part of its size a matrix has no inverse worth the name.
-constexpr double kFlat = 1e-9;
-
 // Numbers that a file's meshes may have together: positions, normals, two sets
 // of joints and weights of every vertex, and the corners of the triangles.
 constexpr size_t kNumbersPerVertex = 3 + 3 + 4 * 4;
@@ -61,28 +53,6 @@ absl::Status Fault(absl::string_view path, absl::string_view reason) {
   return absl::InvalidArgumentError(absl::StrCat(path, ": ", reason));
 }
 
-bool IsFlat(const Affine3d& transform) {
-  const double size = transform.linear().norm();
-  // Written so that NaN is flat.
-  return !(std::abs(transform.linear().determinant()) >
-           kFlat * size * size * size);
-}
-
-WeightedSkin::Affine Rows(const Affine3d& transform) {
-  return transform.matrix().topRows<3>();
-}
-
-// What moves the vertices of one mesh in the scene: a skin, or the joint that
-// the mesh hangs from.
-struct Binding {
-  // Joints of the skeleton, by their places in the skin's list.
-  std::vector<int> joints;
-  // While everything rests, in the skeleton's unit; one a joint.
-  std::vector<Affine3d> skeleton_from_mesh;
-  // Of what is at fault.
-  std::string path;
-};
-
 class SkinnedMeshBuilder {
  public:
   SkinnedMeshBuilder(const json& root, const GltfDocument& document,
@@ -94,7 +64,7 @@ class SkinnedMeshBuilder {
         options_(options),
         accessors_(accessors),
         placements_(PlaceGltfNodes(document)),
-        rest_from_bound_(import.skeleton->joint_count()) {}
+        joined_(*import.skeleton) {}
 
   absl::StatusOr<GltfSkinnedMesh> Build();
 
@@ -105,19 +75,11 @@ class SkinnedMeshBuilder {
   std::vector<bool> ShownNodes() const;
 
   absl::Status AddNode(size_t node, size_t mesh);
-  absl::StatusOr<Binding> BindingOfSkin(size_t skin);
+  absl::StatusOr<MeshBinding> BindingOfSkin(size_t skin);
   int JointAbove(size_t node) const;
   Affine3d SkeletonFromNode(size_t node) const;
 
-  absl::Status Append(const GltfMesh& mesh, const Binding& binding);
-  // Where the vertices of `mesh` are bound, such that joints that other meshes
-  // have bound already stay as they are.
-  absl::StatusOr<Affine3d> Place(const Binding& binding,
-                                 const std::vector<double>& weights) const;
-  absl::Status Bind(const Binding& binding, const std::vector<double>& weights,
-                    const Affine3d& skeleton_from_mesh, double size_m);
-  void PackWeights();
-  void Warn();
+  std::vector<std::string> Warnings() const;
 
   const json& root_;
   const GltfDocument& document_;
@@ -125,17 +87,10 @@ class SkinnedMeshBuilder {
   const GltfSkinOptions& options_;
   GltfAccessors& accessors_;
   const std::vector<GltfPlacement> placements_;
-  // Per joint of the skeleton how it moves bound vertices in the rest pose;
-  // nothing for one that no mesh has bound.
-  std::vector<std::optional<Affine3d>> rest_from_bound_;
-  // By joints of the skeleton, for all vertices so far.
-  std::vector<GltfInfluence> influences_;
-  std::vector<size_t> influence_ends_;
+  JoinedMesh joined_;
   int strangers_ = 0;
   int loose_ = 0;
   int skipped_primitives_ = 0;
-  int weightless_ = 0;
-  GltfSkinnedMesh result_;
 };
 
 absl::StatusOr<GltfSkinnedMesh> SkinnedMeshBuilder::Build() {
@@ -153,25 +108,17 @@ absl::StatusOr<GltfSkinnedMesh> SkinnedMeshBuilder::Build() {
     if (*chosen && **chosen != *mesh) continue;
     if (absl::Status status = AddNode(i, *mesh); !status.ok()) return status;
   }
-  if (result_.mesh.positions.empty()) {
+  if (joined_.mesh().positions.empty()) {
     return Fault("meshes", "none is moved by this skeleton's joints");
   }
-  PackWeights();
-  const absl::Status status = CheckMesh(result_.mesh, options_.bounds);
+  const absl::Status status = CheckMesh(joined_.mesh(), options_.bounds);
   if (!status.ok()) return status;
-  WorldTransforms rest;
-  ForwardKinematics(*import_.skeleton, import_.skeleton->rest_positions(),
-                    rest);
-  for (size_t i = 0; i < rest.size(); ++i) {
-    const RigidTransform inverse = rest[i].Inverse();
-    const Affine3d joint_from_skeleton =
-        Eigen::Translation3d(inverse.translation) * inverse.rotation;
-    result_.joint_from_mesh.push_back(
-        Rows(joint_from_skeleton *
-             rest_from_bound_[i].value_or(Affine3d::Identity())));
-  }
-  Warn();
-  return std::move(result_);
+  GltfSkinnedMesh result;
+  result.weights = joined_.PackedWeights();
+  result.joint_from_mesh = joined_.JointFromMesh();
+  result.warnings = Warnings();
+  result.mesh = joined_.TakeMesh();
+  return result;
 }
 
 absl::StatusOr<std::optional<size_t>> SkinnedMeshBuilder::ChooseMesh() const {
@@ -208,14 +155,14 @@ std::vector<bool> SkinnedMeshBuilder::ShownNodes() const {
 }
 
 absl::Status SkinnedMeshBuilder::AddNode(size_t node, size_t mesh) {
-  Binding binding;
+  MeshBinding binding;
   const bool has_skin = document_.nodes[node].has_skin;
   if (has_skin) {
     const absl::StatusOr<size_t> skin =
         ReadWhole(root_["nodes"][node], "skin",
                   absl::StrCat("nodes[", node, "]"), std::nullopt);
     if (!skin.ok()) return skin.status();
-    absl::StatusOr<Binding> read = BindingOfSkin(*skin);
+    absl::StatusOr<MeshBinding> read = BindingOfSkin(*skin);
     if (!read.ok()) return read.status();
     if (std::count(read->joints.begin(), read->joints.end(), -1) > 0) {
       ++strangers_;
@@ -233,8 +180,8 @@ absl::Status SkinnedMeshBuilder::AddNode(size_t node, size_t mesh) {
     binding.path = absl::StrCat("nodes[", node, "]");
   }
   MeshBounds left = options_.bounds;
-  left.max_vertices -= static_cast<int>(result_.mesh.positions.size());
-  left.max_triangles -= static_cast<int>(result_.mesh.triangles.size());
+  left.max_vertices -= static_cast<int>(joined_.mesh().positions.size());
+  left.max_triangles -= static_cast<int>(joined_.mesh().triangles.size());
   absl::StatusOr<GltfMesh> read =
       ReadGltfMesh(root_, mesh, has_skin, left, accessors_);
   if (!read.ok()) return read.status();
@@ -245,14 +192,14 @@ absl::Status SkinnedMeshBuilder::AddNode(size_t node, size_t mesh) {
       read->influence_ends.push_back(i + 1);
     }
   }
-  return Append(*read, binding);
+  return joined_.Append(*read, binding);
 }
 
-absl::StatusOr<Binding> SkinnedMeshBuilder::BindingOfSkin(size_t skin) {
+absl::StatusOr<MeshBinding> SkinnedMeshBuilder::BindingOfSkin(size_t skin) {
   const absl::StatusOr<const json*> object = ObjectAt(root_, "skins", skin);
   if (!object.ok()) return object.status();
   const std::vector<int>& nodes = document_.skins[skin].joints;
-  Binding binding;
+  MeshBinding binding;
   binding.path = absl::StrCat("skins[", skin, "]");
   const std::string path = binding.path + ".inverseBindMatrices";
   // Missing, they are identities.
@@ -305,146 +252,17 @@ Affine3d SkinnedMeshBuilder::SkeletonFromNode(size_t node) const {
   return skeleton_from_node;
 }
 
-absl::StatusOr<Affine3d> SkinnedMeshBuilder::Place(
-    const Binding& binding, const std::vector<double>& weights) const {
-  // The joint with most of the mesh, of those bound already if there are any.
-  const auto rank = [&](size_t i) {
-    return std::pair(weights[i] > 0 && rest_from_bound_[binding.joints[i]],
-                     weights[i]);
-  };
-  size_t best = 0;
-  for (size_t i = 1; i < weights.size(); ++i) {
-    if (rank(i) > rank(best)) best = i;
-  }
-  const Affine3d& moved = binding.skeleton_from_mesh[best];
-  if (IsFlat(moved)) {
-    return Fault(
-        binding.path,
-        absl::StrFormat("the matrix of joint %d has no inverse", best));
-  }
-  const auto& bound = rest_from_bound_[binding.joints[best]];
-  return bound ? bound->inverse() * moved : moved;
-}
-
-absl::Status SkinnedMeshBuilder::Bind(const Binding& binding,
-                                      const std::vector<double>& weights,
-                                      const Affine3d& skeleton_from_mesh,
-                                      double size_m) {
-  const Affine3d mesh_from_skeleton = skeleton_from_mesh.inverse();
-  for (size_t i = 0; i < weights.size(); ++i) {
-    if (weights[i] == 0) continue;
-    const Affine3d moved = binding.skeleton_from_mesh[i] * mesh_from_skeleton;
-    if (!moved.matrix().allFinite()) {
-      return Fault(binding.path,
-                   absl::StrFormat("the matrix of joint %d is too large", i));
-    }
-    std::optional<Affine3d>& bound = rest_from_bound_[binding.joints[i]];
-    if (!bound) {
-      bound = moved;
-      continue;
-    }
-    const double apart_m = (moved.linear() - bound->linear()).norm() * size_m +
-                           (moved.translation() - bound->translation()).norm();
-    if (apart_m > kSameBinding * size_m) {
-      return Fault(
-          binding.path,
-          absl::StrFormat(
-              "binds joint %s in another place than a mesh before; "
-              "take one of the meshes",
-              QuotedId(import_.skeleton->joint(binding.joints[i]).id)));
-    }
-  }
-  return absl::OkStatus();
-}
-
-absl::Status SkinnedMeshBuilder::Append(const GltfMesh& mesh,
-                                        const Binding& binding) {
-  // Of each joint of the binding, over all vertices.
-  std::vector<double> weights(binding.joints.size(), 0);
-  for (const GltfInfluence& influence : mesh.influences) {
-    if (influence.joint >= static_cast<int>(weights.size())) {
-      return Fault(
-          binding.path,
-          absl::StrFormat("want a joint, 0 to %d, of every vertex, got "
-                          "%d",
-                          weights.size() - 1, influence.joint));
-    }
-    weights[influence.joint] += influence.weight;
-  }
-  const absl::StatusOr<Affine3d> place = Place(binding, weights);
-  if (!place.ok()) return place.status();
-  TriangleMesh& joined = result_.mesh;
-  const int first = static_cast<int>(joined.positions.size());
-  const bool is_mirrored = place->linear().determinant() < 0;
-  double size_m = 0;
-  for (const Eigen::Vector3d& position : mesh.surface.positions) {
-    joined.positions.push_back(*place * position);
-    size_m = std::max(size_m, joined.positions.back().norm());
-  }
-  // Of normals; a mirror leaves them on their side.
-  const Eigen::Matrix3d inverse_transpose =
-      place->linear().inverse().transpose();
-  for (const Eigen::Vector3d& normal : mesh.surface.normals) {
-    joined.normals.push_back((inverse_transpose * normal).stableNormalized());
-  }
-  for (Triangle triangle : mesh.surface.triangles) {
-    if (is_mirrored) std::swap(triangle[1], triangle[2]);
-    joined.triangles.emplace_back(triangle.array() + first);
-  }
-  if (absl::Status status = Bind(binding, weights, *place, size_m);
-      !status.ok()) {
-    return status;
-  }
-  size_t next = 0;
-  for (size_t end : mesh.influence_ends) {
-    if (next == end) {
-      ++weightless_;
-      influences_.push_back({binding.joints[0], 1});
-    }
-    for (; next < end; ++next) {
-      influences_.push_back({binding.joints[mesh.influences[next].joint],
-                             mesh.influences[next].weight});
-    }
-    influence_ends_.push_back(influences_.size());
-  }
-  return absl::OkStatus();
-}
-
-void SkinnedMeshBuilder::PackWeights() {
-  size_t most = 1;
-  size_t first = 0;
-  for (size_t end : influence_ends_) {
-    most = std::max(most, end - first);
-    first = end;
-  }
-  SkinWeights& weights = result_.weights;
-  weights.influences_per_vertex = static_cast<int>(most);
-  weights.joints.assign(most * influence_ends_.size(), 0);
-  weights.weights.assign(most * influence_ends_.size(), 0);
-  first = 0;
-  for (size_t v = 0; v < influence_ends_.size(); ++v) {
-    double sum = 0;
-    for (size_t i = first; i < influence_ends_[v]; ++i) {
-      sum += influences_[i].weight;
-    }
-    for (size_t i = first; i < influence_ends_[v]; ++i) {
-      weights.joints[most * v + i - first] = influences_[i].joint;
-      weights.weights[most * v + i - first] = influences_[i].weight / sum;
-    }
-    first = influence_ends_[v];
-  }
-}
-
-void SkinnedMeshBuilder::Warn() {
-  const auto warn = [this](int count, absl::string_view what) {
-    if (count == 0) return;
-    result_.warnings.push_back(absl::StrCat(count, what));
+std::vector<std::string> SkinnedMeshBuilder::Warnings() const {
+  std::vector<std::string> warnings;
+  const auto warn = [&](int count, absl::string_view what) {
+    if (count > 0) warnings.push_back(absl::StrCat(count, what));
   };
   warn(strangers_, " meshes are left out: their skin has other joints");
   warn(loose_, " meshes are left out: they hang from no joint, or are flat");
   warn(skipped_primitives_, " primitives of points or lines are left out");
-  warn(weightless_,
+  warn(joined_.weightless_vertices(),
        " vertices have no weight: they follow the first joint of their skin");
+  return warnings;
 }
 
 }  // namespace
