@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "gelenk/skin/nurbs_skin.h"
 #include "gelenk/skin/nurbs_surface.h"
 #include "tests/core/skin/mesh_checks.h"
@@ -258,6 +259,25 @@ TEST_F(NurbsSkinTest, RefinesUntilItFollowsTheVolumes) {
     }
   }
   EXPECT_GT(last_points, Tube(0.2).points.size());
+}
+
+// The volumes are C1: across their borders nets of any degree follow with the
+// square of the knots' distance.
+TEST_F(NurbsSkinTest, ErrorAtAnElbowFallsWithTheSquareOfTheSpacing) {
+  NurbsSkinOptions as_it_is;
+  as_it_is.tolerance_m = 1;
+  double last_m = 0;
+  for (int spans : {8, 16, 32, 64}) {
+    const auto skin = NurbsSkin::Create(*rig_, Tube(0.2, spans), as_it_is);
+    ASSERT_TRUE(skin.ok()) << skin.status();
+    const double error_m = (*skin)->estimated_error_m();
+    RecordProperty(absl::StrCat("error_", spans, "_spans"),
+                   absl::StrCat(error_m));
+    if (last_m > 0) {
+      EXPECT_GT(last_m / error_m, 3) << spans;
+    }
+    last_m = error_m;
+  }
 }
 
 TEST_F(NurbsSkinTest, TessellationIsTheSurface) {
