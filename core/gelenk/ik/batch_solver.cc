@@ -60,8 +60,9 @@ void BatchSolver::SolveArms(IkProblem& problem,
                             BatchReport& report, const StopCondition& stop) {
   const SerialArm& arm = *problem.arm();
   kernel::ArmSettings settings;
-  arm.Prepare(SettingsFor(problem, problem.tree().Layout(), options, stop),
-              problem.targets()[0], settings);
+  const kernel::TreeLayout tree = problem.tree().Layout();
+  arm.Prepare(SettingsFor(problem, tree, options, stop), problem.targets()[0],
+              settings);
   arm_targets_.resize(count);
   poses_.resize(count);
   attempts_.resize(count);
@@ -81,7 +82,11 @@ void BatchSolver::SolveArms(IkProblem& problem,
   starts_.assign(poses_.begin(), poses_.end());
 
   const ArmRequest request = {
-      arm, settings, start,
+      arm,
+      settings,
+      {tree.lower, size_t(tree.node_count)},
+      {tree.upper, size_t(tree.node_count)},
+      start,
       std::min(ArmRestartBudget(options, start), kLaneRestarts),
       options.restart_seed};
   // Where they depend on the start they are no use for all.

@@ -114,6 +114,15 @@ bool IsOnLimit(const Skeleton& skeleton, int j,
   return false;
 }
 
+// An arm that the kernels of arms do not take: one of its joints mimics
+// another, or a limit is no number for them.
+bool IsOtherArm(const kernel::TreeLayout& tree) {
+  return tree.task_count == 1 &&
+         tree.tasks[0].shape == kernel::GoalShape::kPose &&
+         tree.tasks[0].row_end - tree.tasks[0].row_begin == 6 &&
+         tree.column_count <= kernel::kMaxArmJoints;
+}
+
 using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
 
 ConstVectorMap View(const std::vector<double>& numbers) {
@@ -239,7 +248,9 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
   kernel::Settings settings = SettingsFor(problem, tree, options, stop);
   narrow(tree, settings);
   // Starts from elsewhere would be out of bounds.
-  const int budget = bounded ? 0 : RestartBudget(options, start);
+  const int budget = bounded            ? 0
+                     : IsOtherArm(tree) ? ArmRestartBudget(options, start)
+                                        : RestartBudget(options, start);
   settings.impatient = budget > 0;
   kernel::Attempt attempt;
   const bool reached_out =
@@ -282,7 +293,11 @@ bool LevenbergMarquardtSolver::SolveAsArm(
   narrow(tree, tree_settings);
   arm.Prepare(tree_settings, problem.targets()[0], settings);
   arm.Prepare(problem.targets()[0], target);
-  const ArmRequest request = {arm, settings, start,
+  const ArmRequest request = {arm,
+                              settings,
+                              {tree.lower, size_t(tree.node_count)},
+                              {tree.upper, size_t(tree.node_count)},
+                              start,
                               ArmRestartBudget(options, start),
                               options.restart_seed};
   const kernel::ArmAttempt attempt = SolveArm(arm_kernel_, request, target, q);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gelenk/ik/start_sampler.h"
 
@@ -29,8 +30,22 @@ constexpr int kPolishFactor = 4;
 // Energies that differ by less, relatively, are as good.
 constexpr double kSameEnergy = 1e-6;
 
+// A warm descent that took so many iterations to move a joint so far may have
+// started in a singular pose: others take three, rad or m.
+constexpr int kForkIterations = 4;
+constexpr double kForkMove = 0.01;
+// Nearer to a limit than this an arm has little room, rad or m.
+constexpr double kNarrow = 1;
+// The square of how much longer the other way from a singular pose may be.
+constexpr double kAsShort = 2;
+
 bool Converged(const ArmAttempt& attempt) {
   return attempt.end == AttemptEnd::kConverged;
+}
+
+bool IsFork(const ArmRequest& request, const ArmAttempt& attempt, double move) {
+  return request.start == SolveStart::kWarm && Converged(attempt) &&
+         attempt.iterations >= kForkIterations && move > kForkMove;
 }
 
 class ArmSolve {
@@ -57,6 +72,9 @@ class ArmSolve {
     }
     // Else the iterations were used up.
     if (best_.end == AttemptEnd::kImpatient) FindClosest();
+    if (IsFork(request_, best_, LargestMove(request_.arm, start_, q_))) {
+      LeaveRoom();
+    }
     const bool settled =
         Converged(best_) || best_.end == AttemptEnd::kStationary;
     if (warm && settled && LargestMove(request_.arm, start_, q_) > kArmJump) {
@@ -96,6 +114,47 @@ class ArmSolve {
       Replace(attempt, q);
     }
     best_.end = attempt.end;
+  }
+
+  // Off a singular pose the arm may bend either way, and rounding decides. Of
+  // two ways that are as short the one that runs into a limit is for later
+  // frames a dead end.
+  void LeaveRoom() {
+    const double room = LeastRoom(q_);
+    if (room > kNarrow) return;
+    ArmRow q = start_;
+    for (int i = 0; i < layout_.joint_count; ++i) {
+      q[i] = std::clamp(2 * start_[i] - q_[i], settings_.lower[i],
+                        settings_.upper[i]);
+    }
+    const ArmAttempt attempt = kernel_.descend(layout_, settings_, target_, q);
+    Count(attempt);
+    if (Converged(attempt) && IsOpposite(q) && LeastRoom(q) > room) {
+      Replace(attempt, q);
+    }
+  }
+
+  // Of `q` to a limit, rad or m.
+  double LeastRoom(const ArmRow& q) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < layout_.joint_count; ++i) {
+      least = std::min({least, q[i] - request_.lower_limits[i],
+                        request_.upper_limits[i] - q[i]});
+    }
+    return least;
+  }
+
+  // Whether `q` is on the other side of the start than q_, and as near.
+  bool IsOpposite(const ArmRow& q) const {
+    double across = 0, way2 = 0, other2 = 0;
+    for (int i = 0; i < layout_.joint_count; ++i) {
+      const double way = q_[i] - start_[i];
+      const double other = q[i] - start_[i];
+      across += way * other;
+      way2 += way * way;
+      other2 += other * other;
+    }
+    return across < -0.5 * way2 && other2 < kAsShort * way2;
   }
 
   void FindClosest() {
@@ -193,10 +252,11 @@ kernel::ArmAttempt SolveArm(const kernel::ArmKernel& kernel,
   const ArmRow start = q;
   const ArmAttempt attempt =
       kernel.descend(request.arm.layout(), request.settings, target, q);
-  const bool done =
-      Converged(attempt) && (request.start == SolveStart::kCold ||
-                             LargestMove(request.arm, start, q) <= kArmJump);
-  if (done) return attempt;
+  if (Converged(attempt)) {
+    if (request.start == SolveStart::kCold) return attempt;
+    const double move = LargestMove(request.arm, start, q);
+    if (move <= kArmJump && !IsFork(request, attempt, move)) return attempt;
+  }
   return ArmSolve(kernel, request, target, start).GoOn(attempt, q);
 }
 

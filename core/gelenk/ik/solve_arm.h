@@ -15,6 +15,7 @@
 
 #include <cstdint>
 
+#include "absl/types/span.h"
 #include "gelenk/ik/instruction_set.h"
 #include "gelenk/ik/kernel/arm_layout.h"
 #include "gelenk/ik/serial_arm.h"
@@ -27,9 +28,8 @@ inline constexpr double kArmJump = 0.5;
 
 // Attempts from other starts that a cold solve of an arm has unless told
 // otherwise. They go side by side in vector lanes, so that more of them fit
-// into the same time; one in ten or so of those that are needed at all
-// converges.
-inline constexpr int kArmColdRestarts = 100;
+// into the same time. The hardest targets of random arms take some 300.
+inline constexpr int kArmColdRestarts = 400;
 
 inline int ArmRestartBudget(const SolverOptions& options, SolveStart start) {
   return options.max_restarts.value_or(
@@ -41,7 +41,11 @@ kernel::ArmKernel ArmKernelFor(InstructionSet level);
 
 struct ArmRequest {
   const SerialArm& arm;
+  // Within the bounds of the frame.
   const kernel::ArmSettings& settings;
+  // Of the joints, one each.
+  absl::Span<const double> lower_limits;
+  absl::Span<const double> upper_limits;
   SolveStart start;
   int restart_budget;
   int64_t restart_seed;

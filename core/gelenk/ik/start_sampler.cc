@@ -13,13 +13,23 @@ namespace {
 // How far from the start an unbounded orientation or translation is drawn.
 constexpr double kRotationReach = 1.2;  // rad
 constexpr double kTranslationReach_m = 0.3;
+// Two turns in other digits are two turns.
+constexpr double kRounding = 1e-6;
+// A slide with limits further apart is as good as without any.
+constexpr double kWidestSlide_m = 1e3;
 
 }  // namespace
 
 StartRange RangeOfStarts(bool is_angle, double start, double lower,
                          double upper) {
   const double reach = is_angle ? std::numbers::pi : kTranslationReach_m;
+  const double widest = is_angle ? 4 * std::numbers::pi : kWidestSlide_m;
   const double center = is_angle ? 0 : start;
+  const double width = upper - lower;
+  if (std::isfinite(width) && width > widest * (1 + kRounding)) {
+    lower = std::clamp(center - reach, lower, upper - 2 * reach);
+    return {lower, lower + 2 * reach};
+  }
   // A bound on one side only may lie beyond the default of the other.
   if (!std::isfinite(lower)) lower = std::min(center - reach, upper);
   if (!std::isfinite(upper)) upper = std::max(center + reach, lower);

@@ -15,8 +15,9 @@ struct StartRange {
   double upper;
 };
 
-// The bounds where there are any; else half a turn either way of zero for an
-// angle, and near `start` for a translation.
+// The bounds where there are any; else, or where they are more than two turns
+// or 1 km apart, half a turn either way of zero for an angle, and near `start`
+// for a translation.
 StartRange RangeOfStarts(bool is_angle, double start, double lower,
                          double upper);
 

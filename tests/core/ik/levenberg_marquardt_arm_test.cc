@@ -70,9 +70,11 @@ Solved Solve(InstructionSet level, const IkProblem& problem,
   return solved;
 }
 
+// Of joints without limits zero.
 Eigen::VectorXd MiddleOf(const Skeleton& skeleton) {
   const PositionBounds& bounds = skeleton.position_bounds();
-  return 0.5 * (bounds.lower + bounds.upper);
+  const Eigen::ArrayXd middle = 0.5 * (bounds.lower + bounds.upper);
+  return middle.isFinite().select(middle, 0);
 }
 
 // Arms of 6 to 10 joints, most of them with limits.
@@ -200,6 +202,19 @@ TEST_P(ArmTest, RandomArmsMeetWarmTargets) {
   }
   EXPECT_EQ(solved, kArms * kTargets);
   EXPECT_LE(jumps, 1);
+}
+
+// Some of them take hundreds of restarts.
+TEST_P(ArmTest, RandomArmsMeetColdTargets) {
+  Random random(14);
+  int solved = 0;
+  constexpr int kArms = 30;
+  constexpr int kTargets = 40;
+  for (int i = 0; i < kArms; ++i) {
+    solved += SolveMany(random, RandomArm(random), kTargets, SolveStart::kCold)
+                  .solved;
+  }
+  EXPECT_GE(solved, kArms * kTargets - 1);
 }
 
 // A goal of weight zero beside it makes the same problem no arm.

@@ -115,5 +115,23 @@ TEST(StartSamplerTest, HalfOpenLimitsHold) {
   }
 }
 
+TEST(StartSamplerTest, LimitsFarApartAreAsGoodAsNone) {
+  constexpr double kPi = 3.141592653589793;
+  const StartRange turns = RangeOfStarts(true, 5, -1e6, 1e6);
+  EXPECT_DOUBLE_EQ(turns.lower, -kPi);
+  EXPECT_DOUBLE_EQ(turns.upper, kPi);
+  // A whole turn, wherever it lies.
+  const StartRange beyond = RangeOfStarts(true, 5, 1, 100);
+  EXPECT_DOUBLE_EQ(beyond.lower, 1);
+  EXPECT_DOUBLE_EQ(beyond.upper, 1 + 2 * kPi);
+  const StartRange slide = RangeOfStarts(false, 5, -1e6, 1e6);
+  EXPECT_DOUBLE_EQ(slide.lower, 4.7);
+  EXPECT_DOUBLE_EQ(slide.upper, 5.3);
+  // Two turns of a robot's joint are meant.
+  const StartRange robot = RangeOfStarts(true, 0, -2 * kPi, 2 * kPi);
+  EXPECT_EQ(robot.lower, -2 * kPi);
+  EXPECT_EQ(robot.upper, 2 * kPi);
+}
+
 }  // namespace
 }  // namespace gelenk
