@@ -11,7 +11,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -19,19 +18,19 @@
 #include "gelenk/ik/ik_solver.h"
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/math/rotation.h"
-#include "gelenk/skeleton/skeleton_builder.h"
-#include "tests/testing/example_skeletons.h"
 #include "tests/testing/ik_targets.h"
+#include "tests/testing/live_hands.h"
 
 namespace gelenk {
 namespace {
 
 using testing::EffectorPose;
-using testing::PandaArm;
+using testing::Hand;
+using testing::LiveHands;
 using testing::PoseGoalFor;
 using testing::PositionGoalFor;
+using testing::WayOutOf;
 
-constexpr double kPi = std::numbers::pi;
 // A joint's bound a frame, rad: 7.2 rad/s.
 constexpr double kMaxStep_rad = 0.1;
 // The answer's distance to the target beyond the true one.
@@ -39,96 +38,15 @@ constexpr double kExcess_m = 1e-3;
 constexpr double kTurnExcess_rad = 5e-3;
 constexpr double kFrame_m = 0.02;
 
-// Standard table of a UR5.
-std::shared_ptr<const Skeleton> Ur5() {
-  const double a[] = {0, -0.425, -0.39225, 0, 0, 0};
-  const double d[] = {0.089159, 0, 0, 0.10915, 0.09465, 0.0823};
-  const double alpha[] = {kPi / 2, 0, 0, kPi / 2, -kPi / 2, 0};
-  SkeletonBuilder builder;
-  RigidTransform before;
-  for (int i = 0; i < 6; ++i) {
-    Joint joint;
-    joint.id = "j" + std::to_string(i);
-    if (i > 0) joint.parent_id = "j" + std::to_string(i - 1);
-    joint.type = JointType::kRevolute;
-    joint.axis = Eigen::Vector3d::UnitZ();
-    joint.parent_from_joint = before;
-    joint.limits.lower = {-2 * kPi};
-    joint.limits.upper = {2 * kPi};
-    builder.AddJoint(joint);
-    before.translation = Eigen::Vector3d(a[i], 0, d[i]);
-    before.rotation = Eigen::AngleAxisd(alpha[i], Eigen::Vector3d::UnitX());
-  }
-  builder.AddEndEffector({"tip", "j5", before});
-  return *builder.Build();
-}
-
-// Shoulder and wrist are ball joints, the elbow is a hinge.
-std::shared_ptr<const Skeleton> HumanArm() {
-  SkeletonBuilder builder;
-  Joint shoulder;
-  shoulder.id = "shoulder";
-  shoulder.type = JointType::kSpherical;
-  builder.AddJoint(shoulder);
-  Joint elbow;
-  elbow.id = "elbow";
-  elbow.parent_id = "shoulder";
-  elbow.type = JointType::kRevolute;
-  elbow.axis = Eigen::Vector3d::UnitY();
-  elbow.parent_from_joint.translation.x() = 0.3;
-  elbow.limits.lower = {0};
-  elbow.limits.upper = {2.6};
-  builder.AddJoint(elbow);
-  Joint wrist;
-  wrist.id = "wrist";
-  wrist.parent_id = "elbow";
-  wrist.type = JointType::kSpherical;
-  wrist.parent_from_joint.translation.x() = 0.26;
-  builder.AddJoint(wrist);
-  EndEffector palm;
-  palm.id = "tip";
-  palm.joint_id = "wrist";
-  palm.joint_from_end_effector.translation.x() = 0.08;
-  builder.AddEndEffector(palm);
-  return *builder.Build();
-}
-
-struct Hand {
-  std::string name;
-  std::shared_ptr<const Skeleton> skeleton;
-  Eigen::VectorXd start;
-};
-
-std::vector<Hand> Hands() {
-  std::vector<Hand> hands;
-  Eigen::VectorXd panda(7);
-  panda << 0, -0.6, 0, -2.2, 0, 1.6, 0.8;
-  hands.push_back({"panda", PandaArm(), panda});
-  Eigen::VectorXd ur5(6);
-  ur5 << 0.3, -1.4, 1.6, -1.2, -1.4, 0.2;
-  hands.push_back({"ur5", Ur5(), ur5});
-  const auto arm = HumanArm();
-  Eigen::VectorXd q = NeutralPositions(*arm);
-  StoreXyzw(ExpRotation(Eigen::Vector3d(0.1, 0.3, -0.4)), &q[0]);
-  q[4] = 1.2;
-  hands.push_back({"human", arm, q});
-  return hands;
-}
-
-std::string TipOf(const Hand& hand) {
-  return hand.skeleton->end_effectors()[0].id;
-}
-
 // Plays targets and remembers the worst of what must not happen.
 class Stream {
  public:
   Stream(const Hand& hand, bool pose) : hand_(hand), positions_(hand.start) {
     const RigidTransform here =
-        EffectorPose(*hand.skeleton, positions_, TipOf(hand));
+        EffectorPose(*hand.skeleton, positions_, hand.tip());
     problem_ = std::make_unique<IkProblem>(*IkProblem::Create(
-        hand.skeleton,
-        {pose ? PoseGoalFor(TipOf(hand), here)
-              : PositionGoalFor(TipOf(hand), here.translation)}));
+        hand.skeleton, {pose ? PoseGoalFor(hand.tip(), here)
+                             : PositionGoalFor(hand.tip(), here.translation)}));
     options_.position_tolerance_m = 1e-5;
     options_.rotation_tolerance_rad = 1e-4;
     options_.max_step = kMaxStep_rad;
@@ -174,19 +92,14 @@ class Stream {
 
 class LiveHandTest : public ::testing::TestWithParam<int> {
  protected:
-  const Hand hand_ = Hands()[GetParam()];
+  const Hand hand_ = LiveHands()[GetParam()];
 };
 
 // Straight out past the boundary and back on the same line, slowly enough near
 // the boundary for an elbow that bends with the square root of the way.
 TEST_P(LiveHandTest, PastTheReachAndBack) {
   Stream stream(hand_, false);
-  const Eigen::Vector3d from =
-      EffectorPose(*hand_.skeleton, hand_.start, TipOf(hand_)).translation;
-  const Eigen::Vector3d base =
-      EffectorPose(*hand_.skeleton, hand_.start, hand_.skeleton->joint(1).id)
-          .translation;
-  const Eigen::Vector3d way = (from - base).normalized();
+  const auto [from, way] = WayOutOf(hand_);
   const double step_m = 0.001;
   const int out = 700;
   Eigen::Vector3d last = from;
@@ -210,6 +123,22 @@ TEST_P(LiveHandTest, PastTheReachAndBack) {
   EXPECT_LE(stream.distance_m(), kExcess_m) << "came back";
 }
 
+// At full stretch an arm may bend either way, and on one of them a limit may
+// wait.
+TEST_P(LiveHandTest, ComesBackAtOtherSpeeds) {
+  const auto [from, way] = WayOutOf(hand_);
+  for (const int out : {250, 360, 500}) {
+    Stream stream(hand_, false);
+    for (int i = 1; i <= 2 * out; ++i) {
+      const int at = i <= out ? i : 2 * out - i;
+      const Eigen::Vector3d target = from + at * (0.7 / out) * way;
+      stream.Frame(target);
+    }
+    EXPECT_LE(stream.largest_step, kMaxStep_rad + 1e-9);
+    EXPECT_LE(stream.distance_m(), kExcess_m) << hand_.name << " in " << out;
+  }
+}
+
 // Along the outside of the reach: the arm is stretched all the time.
 TEST_P(LiveHandTest, AlongTheBoundary) {
   Stream stream(hand_, false);
@@ -217,7 +146,7 @@ TEST_P(LiveHandTest, AlongTheBoundary) {
       EffectorPose(*hand_.skeleton, hand_.start, hand_.skeleton->joint(1).id)
           .translation;
   const Eigen::Vector3d from =
-      EffectorPose(*hand_.skeleton, hand_.start, TipOf(hand_)).translation;
+      EffectorPose(*hand_.skeleton, hand_.start, hand_.tip()).translation;
   Eigen::Vector3d target = from;
   const Eigen::Vector3d out = (from - base).normalized();
   for (int i = 0; i < 120; ++i) stream.Frame(target += 0.01 * out);
@@ -253,7 +182,7 @@ void RunThrough(const Hand& hand,
     // Dropped and bunched frames: a few come late, all at once.
     if (drop > 0 && i % (4 * drop) < drop) continue;
     const RigidTransform target = EffectorPose(
-        *hand.skeleton, path(static_cast<double>(i) / kFrames), TipOf(hand));
+        *hand.skeleton, path(static_cast<double>(i) / kFrames), hand.tip());
     stream.Frame(target);
     EXPECT_LE(stream.distance_m(), kExcess_m)
         << hand.name << ", " << what << ", frame " << i;
@@ -264,7 +193,7 @@ void RunThrough(const Hand& hand,
 }
 
 TEST(LiveHandSingularityTest, Ur5WristElbowAndShoulder) {
-  const Hand hand = Hands()[1];
+  const Hand hand = LiveHands()[1];
   for (const int drop : {0, 1}) {
     for (const int joint : {4, 2}) {
       RunThrough(
@@ -284,7 +213,7 @@ TEST(LiveHandSingularityTest, Ur5WristElbowAndShoulder) {
 }
 
 TEST(LiveHandSingularityTest, PandaWristAndShoulder) {
-  const Hand hand = Hands()[0];
+  const Hand hand = LiveHands()[0];
   for (const int joint : {5, 1}) {
     RunThrough(
         hand,
@@ -299,7 +228,7 @@ TEST(LiveHandSingularityTest, PandaWristAndShoulder) {
 }
 
 TEST(LiveHandSingularityTest, HumanElbowThroughStraight) {
-  const Hand hand = Hands()[2];
+  const Hand hand = LiveHands()[2];
   RunThrough(
       hand,
       [&](double t) {
