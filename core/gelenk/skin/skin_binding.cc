@@ -183,6 +183,52 @@ class MeshBinder {
 
 // Looks from the bone outwards, in every direction: what comes first is the
 // limb's own surface, whatever lies beyond.
+// A point of a surface and its unit normal.
+struct SurfacePoint {
+  Vector3d position;
+  Vector3d normal;
+};
+
+// Points between the vertices of a coarse mesh are this part of a link apart,
+// in the mean: as close as a section is looked at.
+constexpr double kSpacingOfLink = 1.0 / 16;
+// A triangle is cut into so many parts a side at most, and so many points are
+// looked at in all.
+constexpr int kMostCuts = 16;
+constexpr size_t kMostPoints = size_t{1} << 21;
+
+double SpacingFor(const VolumeRig& rig) {
+  double length_m = 0;
+  for (const SkinLink& link : rig.links()) length_m += link.length_m;
+  return kSpacingOfLink * length_m / rig.link_count();
+}
+
+// The vertices, and points inside triangles that are larger than the spacing:
+// the limbs of a coarse mesh have vertices at their ends only.
+std::vector<SurfacePoint> PointsOf(const TriangleMesh& mesh, double spacing_m) {
+  const std::vector<Vector3d> normals = VertexNormals(mesh);
+  std::vector<SurfacePoint> points;
+  for (size_t v = 0; v < normals.size(); ++v) {
+    points.push_back({mesh.positions[v], normals[v]});
+  }
+  for (const Triangle& triangle : mesh.triangles) {
+    const Vector3d& a = mesh.positions[triangle[0]];
+    const Vector3d ab = mesh.positions[triangle[1]] - a;
+    const Vector3d ac = mesh.positions[triangle[2]] - a;
+    const double longest_m = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    if (longest_m <= spacing_m || points.size() >= kMostPoints) continue;
+    const int cuts = static_cast<int>(
+        std::min<double>(std::ceil(longest_m / spacing_m), kMostCuts));
+    const Vector3d normal = ab.cross(ac).normalized();
+    for (int i = 0; i <= cuts; ++i) {
+      for (int j = 0; i + j <= cuts; ++j) {
+        points.push_back({a + (i * ab + j * ac) / cuts, normal});
+      }
+    }
+  }
+  return points;
+}
+
 class SectionFitter {
  public:
   SectionFitter(const VolumeRig& rig, int link)
@@ -194,10 +240,9 @@ class SectionFitter {
   }
 
   // The section as it is where there is too little to see.
-  Eigen::Vector2d Fit(const TriangleMesh& mesh,
-                      const std::vector<Vector3d>& normals) {
-    for (size_t v = 0; v < mesh.positions.size(); ++v) {
-      Look(mesh.positions[v], normals[v]);
+  Eigen::Vector2d Fit(absl::Span<const SurfacePoint> points) {
+    for (const SurfacePoint& point : points) {
+      Look(point.position, point.normal);
     }
     std::vector<Eigen::Vector2d> seen;
     for (int bin = 0; bin < kBins; ++bin) {
@@ -318,11 +363,11 @@ absl::StatusOr<SkinBinding> BindMesh(
 
 std::shared_ptr<const VolumeRig> FitSections(const VolumeRig& rig,
                                              const TriangleMesh& mesh) {
-  const std::vector<Vector3d> normals = VertexNormals(mesh);
+  const std::vector<SurfacePoint> points = PointsOf(mesh, SpacingFor(rig));
   std::vector<Eigen::Vector2d> half_extents;
   half_extents.reserve(rig.link_count());
   for (int i = 0; i < rig.link_count(); ++i) {
-    half_extents.push_back(SectionFitter(rig, i).Fit(mesh, normals));
+    half_extents.push_back(SectionFitter(rig, i).Fit(points));
   }
   return rig.WithHalfExtents(half_extents);
 }

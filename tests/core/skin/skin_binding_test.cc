@@ -51,6 +51,25 @@ bool IsPlausible(const VolumeRig& rig, const std::string& joint_id, int link) {
          rig.link(link).parent == own;
 }
 
+// A limb of few, long triangles, beside a fine one.
+TEST(FitSectionsTest, SeesTheTrianglesOfACoarseLimbNotTheNextLimb) {
+  const auto arm = gelenk::testing::TwoLinkArm(Vector3d::UnitZ());
+  TriangleMesh mesh = TubeMesh({2, 0.1, 1, 16}).value();
+  const TriangleMesh fine = TubeMesh({2, 0.1, 80, 64}).value();
+  const int first = static_cast<int>(mesh.positions.size());
+  for (const Vector3d& position : fine.positions) {
+    mesh.positions.push_back(position + 0.7 * Vector3d::UnitY());
+  }
+  for (const Triangle& triangle : fine.triangles) {
+    mesh.triangles.push_back(triangle.array() + first);
+  }
+  const auto rig = FitSections(*VolumeRig::Create(arm).value(), mesh);
+  for (const SkinLink& link : rig->links()) {
+    EXPECT_GE(link.half_extents_m.minCoeff(), 0.09) << link.id;
+    EXPECT_LE(link.half_extents_m.maxCoeff(), 0.15) << link.id;
+  }
+}
+
 TEST(SkinBindingTest, CoordinatesGiveBackTheMesh) {
   for (absl::string_view name : SkinShapeNames()) {
     const Bound bound(name, 2000);
