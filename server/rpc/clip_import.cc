@@ -46,7 +46,9 @@ absl::StatusOr<ClipImport> ImportBvhClip(const v1::ClipFile& file,
 
 absl::StatusOr<ClipImport> ImportGltfClip(const v1::ClipFile& file,
                                           const Limits& limits) {
-  const absl::StatusOr<GltfDocument> document = ReadGltf(file.data());
+  GltfBounds bounds;
+  bounds.max_animation_numbers = static_cast<size_t>(limits.max_clip_numbers);
+  const absl::StatusOr<GltfDocument> document = ReadGltf(file.data(), bounds);
   if (!document.ok()) return document.status();
   GltfImportOptions options;
   options.bounds.max_joints = limits.max_joints;
@@ -55,7 +57,7 @@ absl::StatusOr<ClipImport> ImportGltfClip(const v1::ClipFile& file,
   absl::StatusOr<GltfImport> import = ImportGltf(*document, options);
   if (!import.ok()) return import.status();
   const absl::StatusOr<std::vector<GltfAnimation>> animations =
-      ReadGltfAnimations(file.data(), *document);
+      ReadGltfAnimations(file.data(), *document, nullptr, bounds);
   if (!animations.ok()) return animations.status();
   const int count = static_cast<int>(animations->size());
   const int index = file.animation_index();

@@ -5,12 +5,15 @@
 #include <vector>
 
 #include "gelenk/base/violations.h"
+#include "server/rpc/body_methods.h"
 #include "server/rpc/clip_creation.h"
 #include "server/rpc/clip_export.h"
 #include "server/rpc/clip_message.h"
 #include "server/rpc/clip_upload.h"
 #include "server/rpc/keyframe_method.h"
 #include "server/rpc/page.h"
+#include "server/rpc/play_method.h"
+#include "server/rpc/process_method.h"
 #include "server/rpc/unary_call.h"
 
 namespace gelenk::server {
@@ -97,6 +100,15 @@ void ServeMotion(Service* service, ServiceState* state, IoThread* thread) {
         return EditKeyframes(*state, request, response);
       },
       state, thread);
+  ServeUnary(
+      service, &Service::RequestProcessClip,
+      [state](IkSolver&, const v1::ProcessClipRequest& request,
+              v1::Clip* response) {
+        return ProcessClip(*state, request, response);
+      },
+      state, thread);
+  ServeBodies(service, state, thread);
+  ServePlayClips(service, state, thread);
   ServeClipUploads(service, state, thread);
   ServeClipExports(service, state, thread);
 }

@@ -176,7 +176,7 @@ absl::StatusOr<std::vector<GltfAnimation>> ReadGltfAnimations(
   if (list == root->end()) return animations;
   if (!list->is_array()) return Fault("animations", "want an array");
   GltfAccessors accessors(*root, BinaryOfGltf(bytes), open_uri,
-                          kMaxGltfAnimationNumbers);
+                          bounds.max_animation_numbers);
   Violations violations;
   for (size_t i = 0; i < list->size(); ++i) {
     const json& animation = (*list)[i];

@@ -52,10 +52,6 @@ struct GltfAnimation {
 using OpenUri =
     std::function<absl::StatusOr<std::string>(absl::string_view uri)>;
 
-// Numbers that all channels of a file may have together: a day of a body at
-// 60 Hz, as a file can have many channels share few bytes.
-inline constexpr size_t kMaxGltfAnimationNumbers = size_t{1} << 26;
-
 // `document` is what ReadGltf makes of the same bytes. Without `open_uri` an
 // animation in another file is an error.
 absl::StatusOr<std::vector<GltfAnimation>> ReadGltfAnimations(

@@ -29,6 +29,9 @@ struct GltfBounds {
   // Nodes have about 15 each. They take 16 bytes, as members of objects 150.
   size_t max_json_values = 2'000'000;
   size_t max_nodes = 65'536;
+  // Of all animations' channels together, which may share few bytes: a day of a
+  // body at 60 Hz.
+  size_t max_animation_numbers = size_t{1} << 26;
 };
 
 absl::StatusOr<GltfDocument> ReadGltf(absl::string_view bytes,

@@ -1,0 +1,16 @@
+// MotionService.PlayClips: layers of clips with goals on top, frame by frame.
+#ifndef GELENK_SERVER_RPC_PLAY_METHOD_H_
+#define GELENK_SERVER_RPC_PLAY_METHOD_H_
+
+#include "gelenk/v1/motion_service.grpc.pb.h"
+#include "server/rpc/io_thread.h"
+#include "server/rpc/service_state.h"
+
+namespace gelenk::server {
+
+void ServePlayClips(v1::MotionService::AsyncService* service,
+                    ServiceState* state, IoThread* thread);
+
+}  // namespace gelenk::server
+
+#endif  // GELENK_SERVER_RPC_PLAY_METHOD_H_
