@@ -60,6 +60,8 @@ absl::Status CheckOptions(const ServerOptions& options) {
   CheckAtLeast("max_clips", limits.max_clips, 1, violations);
   CheckAtLeast("max_clip_numbers", limits.max_clip_numbers, 1, violations);
   CheckAtLeast("max_clip_revisions", limits.max_clip_revisions, 1, violations);
+  CheckAtLeast("max_recording_bytes", limits.max_recording_bytes, 0,
+               violations);
   CheckAtLeast("max_skins", limits.max_skins, 1, violations);
   CheckAtLeast("max_skin_vertices", limits.max_skin_vertices, 1, violations);
   CheckAtLeast("max_skin_triangles", limits.max_skin_triangles, 1, violations);

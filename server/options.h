@@ -36,6 +36,9 @@ struct Limits {
   int max_skin_vertices = 1 << 18;
   int max_skin_triangles = 1 << 19;
   int max_skin_revisions = 16;
+  // All recordings of sessions that are under way, by what they may become: ten
+  // minutes of a 64-joint body at 60 Hz are 76 MB.
+  int64_t max_recording_bytes = int64_t{1} << 30;
   // gRPC's own default; larger things come in pieces.
   int max_message_bytes = 4 << 20;
   // One imported file; an hour of motion capture is about 200 MB.

@@ -46,6 +46,8 @@ void AddLimits(CLI::App& app, Limits& limits) {
             "One clip: frames times the numbers of a pose");
   AddNumber(app, "--max-clip-revisions", limits.max_clip_revisions,
             "Revisions of a clip that are kept");
+  AddNumber(app, "--max-recording-bytes", limits.max_recording_bytes,
+            "All recordings under way, bytes");
   AddNumber(app, "--max-skins", limits.max_skins, "Skins at a time");
   AddNumber(app, "--max-skin-bytes", limits.max_skin_bytes,
             "All skins together, bytes");

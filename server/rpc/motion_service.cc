@@ -14,6 +14,7 @@
 #include "server/rpc/page.h"
 #include "server/rpc/play_method.h"
 #include "server/rpc/process_method.h"
+#include "server/rpc/recording_methods.h"
 #include "server/rpc/unary_call.h"
 
 namespace gelenk::server {
@@ -109,6 +110,7 @@ void ServeMotion(Service* service, ServiceState* state, IoThread* thread) {
       state, thread);
   ServeBodies(service, state, thread);
   ServePlayClips(service, state, thread);
+  ServeRecordings(service, state, thread);
   ServeClipUploads(service, state, thread);
   ServeClipExports(service, state, thread);
 }

@@ -36,6 +36,8 @@ struct ServiceState {
                 server_options.instruction_set) {}
 
   const ServerOptions options;
+  // Bytes that recordings may take; before the sessions, which give them back.
+  std::atomic<int64_t> recording_bytes{0};
   SkeletonStore skeletons;
   SessionRegistry sessions;
   ClipStore clips;

@@ -291,7 +291,13 @@ absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
   frame.needs_continuation =
       drifted_ || partly_named_ || options_.limit_speed || !input_.empty();
   if (options_.limit_speed) NoteMotionLocked(frame);
+  RecordLocked(frame);
   return absl::OkStatus();
+}
+
+void Session::RecordLocked(const SolvedFrame& frame) {
+  if (!recording_) return;
+  recording_->Note(capture_time_, frame.end_time, positions_);
 }
 
 void Session::FollowSourceLocked(SolvedFrame& frame) {
@@ -304,6 +310,7 @@ void Session::FollowSourceLocked(SolvedFrame& frame) {
   frame.positions = positions_;
   frame.needs_continuation = true;
   frame.retarget_report = input_.source->report();
+  RecordLocked(frame);
 }
 
 const StepBounds* Session::SpeedBoundsLocked(SolvedFrame& frame) const {
@@ -401,6 +408,27 @@ bool Session::CopyIfNewer(uint64_t& version, Eigen::VectorXd& positions,
   sequence_number =
       sequence_number_ > 0 ? sequence_number_ : static_cast<int64_t>(version_);
   return true;
+}
+
+absl::Status Session::StartRecording(
+    std::shared_ptr<SessionRecording> recording) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  if (!ended_.ok()) return ended_;
+  if (recording_) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("session: ", name_, " is recorded already"));
+  }
+  recording_ = std::move(recording);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::shared_ptr<SessionRecording>> Session::StopRecording() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  if (!recording_) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("session: ", name_, " is not recorded"));
+  }
+  return std::exchange(recording_, nullptr);
 }
 
 void Session::End(absl::Status why) {

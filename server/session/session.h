@@ -23,6 +23,7 @@
 #include "gelenk/skeleton/skeleton.h"
 #include "server/session/input_frame.h"
 #include "server/session/session_input.h"
+#include "server/session/session_recording.h"
 #include "server/session/shared_trees.h"
 
 namespace gelenk::server {
@@ -165,6 +166,12 @@ class Session {
                    RigidTransform& world_from_skeleton,
                    int64_t& sequence_number) const;
 
+  // From now on `recording` takes every pose that is solved for.
+  // FAILED_PRECONDITION while there is another one.
+  absl::Status StartRecording(std::shared_ptr<SessionRecording> recording);
+  // Takes it away. FAILED_PRECONDITION when there is none.
+  absl::StatusOr<std::shared_ptr<SessionRecording>> StopRecording();
+
   // Ends the session for good; drivers and viewers are told `why`.
   void End(absl::Status why);
   // OK while it lives.
@@ -182,6 +189,9 @@ class Session {
   absl::Status TakeNumberLocked(DriverId driver,
                                 std::optional<int64_t> sequence_number,
                                 absl::Time now)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Adds the present pose, that of `frame`, to a recording.
+  void RecordLocked(const SolvedFrame& frame)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Instead of a solve.
   void FollowSourceLocked(SolvedFrame& frame)
@@ -219,6 +229,8 @@ class Session {
   JointMotion motion_ ABSL_GUARDED_BY(mutex_);
   // Weights, goals or place were changed by frames.
   bool drifted_ ABSL_GUARDED_BY(mutex_) = false;
+  // Null while nobody records.
+  std::shared_ptr<SessionRecording> recording_ ABSL_GUARDED_BY(mutex_);
   // The last frame left some goal where it was.
   bool partly_named_ ABSL_GUARDED_BY(mutex_) = false;
 };

@@ -350,5 +350,73 @@ TEST_F(MotionCallsTest, BadPlaysAreNamed) {
               Fails(absl::StatusCode::kFailedPrecondition, "layers[1].clip"));
 }
 
+TEST_F(MotionCallsTest, ARecordedSessionIsAClip) {
+  const std::string session = CreateSession();
+  v1::StartRecordingRequest start;
+  start.set_session(session);
+  ASSERT_TRUE(Call(&Stub::StartRecording, start).ok());
+  EXPECT_THAT(Call(&Stub::StartRecording, start).status(),
+              Fails(absl::StatusCode::kFailedPrecondition, "already"));
+  v1::AttachSession attach = testing::AttachRequest(session);
+  const auto stream = OpenStream({attach});
+  v1::StreamingSolveRequest request;
+  for (int i = 1; i <= 10; ++i) {
+    v1::TargetFrame frame = testing::WholeFrame(i);
+    frame.mutable_capture_time()->set_nanos(20'000'000 * i);
+    *request.add_frames() = frame;
+  }
+  ASSERT_TRUE(stream->Send(request));
+  std::vector<v1::PoseFrame> answers;
+  while (answers.size() < 10) {
+    const auto answer = stream->NextFrame();
+    ASSERT_TRUE(answer.has_value());
+    answers.push_back(*answer);
+  }
+  v1::StopRecordingRequest stop;
+  stop.set_session(session);
+  stop.set_clip_id("recorded");
+  stop.set_request_id("stop");
+  const auto clip = Call(&Stub::StopRecording, stop);
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_EQ(clip->name(), "clips/recorded");
+  EXPECT_NEAR(clip->frame_time_s(), 0.02, 1e-9);
+  const Played played = Play(PlayRequest(*clip));
+  ASSERT_EQ(played.frames.size(), 10u);
+  for (int i = 0; i < 10; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(played.frames[i].pose().positions(k),
+                  answers[i].pose().positions(k), 1e-9);
+    }
+  }
+  EXPECT_EQ(Call(&Stub::StopRecording, stop)->name(), clip->name());
+  stop.set_request_id("");
+  EXPECT_THAT(Call(&Stub::StopRecording, stop).status(),
+              Fails(absl::StatusCode::kFailedPrecondition, "is not recorded"));
+}
+
+TEST_F(MotionCallsTest, ARecordingGoesOnWhereItsClipHasNoPlace) {
+  const std::string session = CreateSession();
+  v1::StartRecordingRequest start;
+  start.set_session(session);
+  start.set_max_frame_count(2'000'000'000);
+  EXPECT_THAT(Call(&Stub::StartRecording, start).status(),
+              Fails(absl::StatusCode::kInvalidArgument, "max_frame_count"));
+  start.set_max_frame_count(5);
+  ASSERT_TRUE(Call(&Stub::StartRecording, start).ok());
+  v1::StopRecordingRequest stop;
+  stop.set_session(session);
+  EXPECT_THAT(Call(&Stub::StopRecording, stop).status(),
+              Fails(absl::StatusCode::kFailedPrecondition, "nothing"));
+  v1::SolveSessionRequest solve;
+  solve.set_name(session);
+  ASSERT_TRUE(Call(&v1::SessionService::Stub::SolveSession, solve).ok());
+  const auto clip = Call(&Stub::StopRecording, stop);
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_EQ(clip->key_count(), 3);
+  ASSERT_TRUE(Call(&Stub::StartRecording, start).ok());
+  stop.set_discard(true);
+  EXPECT_EQ(Call(&Stub::StopRecording, stop)->name(), "");
+}
+
 }  // namespace
 }  // namespace gelenk

@@ -116,6 +116,7 @@ std::vector<Flag> Flags() {
       Of("max-clip-bytes", &Limits::max_clip_bytes),
       Of("max-clip-numbers", &Limits::max_clip_numbers),
       Of("max-clip-revisions", &Limits::max_clip_revisions),
+      Of("max-recording-bytes", &Limits::max_recording_bytes),
       Of("max-joints", &Limits::max_joints),
       Of("max-skins", &Limits::max_skins),
       Of("max-skin-bytes", &Limits::max_skin_bytes),
