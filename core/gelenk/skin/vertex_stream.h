@@ -69,7 +69,7 @@ class DeltaEncoder {
   // A keyframe at least every `keyframe_interval` frames, >= 1.
   explicit DeltaEncoder(int keyframe_interval);
 
-  // Frames of one skin. Replaces `bytes`. About 20 ns a vertex.
+  // Frames of one skin. Replaces `bytes`. Some 40 ns a vertex.
   void Encode(const QuantizedBlocks& blocks, std::string& bytes);
   // The next frame is a keyframe: a client joined, or lost one.
   void RequestKeyframe() { since_keyframe_ = keyframe_interval_; }
