@@ -29,6 +29,7 @@ struct Command {
 
 // Each adds its options to `app`; `run` is for when it was parsed.
 Command AddBenchCommand(CLI::App& app);
+Command AddBridgeCommand(CLI::App& app);
 Command AddClipCommand(CLI::App& app);
 Command AddDhCommand(CLI::App& app);
 Command AddExamplesCommand(CLI::App& app);

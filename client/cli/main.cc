@@ -72,7 +72,8 @@ int main(int argc, char** argv) {
       AddPlayCommand(app),     AddSessionsCommand(app),  AddBenchCommand(app),
       AddExamplesCommand(app), AddDhCommand(app),        AddTwoLinkCommand(app),
       AddTwoBoneCommand(app),  AddWorkspaceCommand(app), AddClipCommand(app),
-      AddRetargetCommand(app), AddMapCommand(app),       AddSkinCommand(app)};
+      AddRetargetCommand(app), AddMapCommand(app),       AddSkinCommand(app),
+      AddBridgeCommand(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -9,8 +9,10 @@
 #include "client/cli/command.h"
 #include "client/cli/motion/body_file.h"
 #include "client/cli/motion/clip_writer.h"
+#include "client/cli/motion/follower.h"
 #include "client/cli/motion/motion_picture.h"
 #include "client/cli/motion/quality_text.h"
+#include "client/cli/service.h"
 #include "client/cli/text/table.h"
 #include "gelenk/motion/clip_frames.h"
 #include "gelenk/retarget/retarget_clip.h"
@@ -35,25 +37,18 @@ struct MapOptions {
   Format format = Format::kTable;
 };
 
-// Frame by frame, as a live source would.
-absl::StatusOr<Eigen::MatrixXd> RetargetLive(const BodyFile& source,
+// Through a session, as a live source is retargeted.
+absl::StatusOr<Eigen::MatrixXd> RetargetLive(const std::string& server,
+                                             const BodyFile& source,
                                              const BodyFile& target) {
-  const auto retargeter = Retargeter::Create(source.model, target.model);
-  if (!retargeter.ok()) return retargeter.status();
-  Eigen::MatrixXd positions(target.model->skeleton->position_count(),
-                            source.positions.cols());
-  for (int f = 0; f < source.positions.cols(); ++f) {
-    const absl::Status status =
-        (*retargeter)->Retarget(source.positions.col(f), source.frame_time_s);
-    if (!status.ok()) return status;
-    positions.col(f) = (*retargeter)->positions();
-  }
-  return positions;
+  const absl::StatusOr<std::unique_ptr<Service>> service =
+      Service::Open(server);
+  if (!service.ok()) return service.status();
+  return FollowClip((*service)->connection(), source, target);
 }
 
 absl::StatusOr<Eigen::MatrixXd> Retarget(const BodyFile& source,
-                                         const BodyFile& target, bool live) {
-  if (live) return RetargetLive(source, target);
+                                         const BodyFile& target) {
   absl::StatusOr<RetargetedClip> clip = RetargetClip(
       source.model, target.model, source.positions, source.frame_time_s);
   if (!clip.ok()) return clip.status();
@@ -61,7 +56,7 @@ absl::StatusOr<Eigen::MatrixXd> Retarget(const BodyFile& source,
 }
 
 absl::Status RunRetarget(const RetargetCommandOptions& options,
-                         std::string* output) {
+                         const std::string& server, std::string* output) {
   MapFile map;
   if (!options.map_path.empty()) {
     absl::StatusOr<MapFile> read = ReadMapFile(options.map_path);
@@ -79,7 +74,8 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
       ReadBodyFile(options.onto, std::nullopt, map.target);
   if (!target.ok()) return target.status();
   const absl::StatusOr<Eigen::MatrixXd> positions =
-      Retarget(*source, *target, options.live);
+      options.live ? RetargetLive(server, *source, *target)
+                   : Retarget(*source, *target);
   if (!positions.ok()) return positions.status();
   const absl::StatusOr<MotionClip> clip = ClipFromFrames(
       target->model->skeleton, *positions,
@@ -200,8 +196,8 @@ Command AddRetargetCommand(CLI::App& app) {
                    "nobody's")
       ->option_text("MAP.json");
   retarget->add_flag("--live", options->live,
-                     "Frame by frame without look-ahead, as a live source is "
-                     "retargeted");
+                     "Frame by frame without look-ahead, through a session as "
+                     "a live source (of --server, or one of its own)");
   retarget
       ->add_option("--unit", options->unit_m,
                    "Metres per unit of FILE; default: guessed")
@@ -214,8 +210,9 @@ Command AddRetargetCommand(CLI::App& app) {
   AddFormatOption(*retarget, &options->format);
   retarget->footer(
       "Example:\n  gelenk retarget walk.bvh --onto humanoid --out out.bvh");
-  return {retarget, [options](const GlobalOptions&, std::string* output) {
-            return RunRetarget(*options, output);
+  return {retarget,
+          [options](const GlobalOptions& global, std::string* output) {
+            return RunRetarget(*options, global.server, output);
           }};
 }
 

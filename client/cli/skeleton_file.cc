@@ -59,7 +59,13 @@ absl::StatusOr<SkeletonFile> FromGltf(const std::string& path,
   if (!document.ok()) return InFile(path, document.status());
   const absl::StatusOr<GltfImport> import = ImportGltf(*document, options);
   if (!import.ok()) return InFile(path, import.status());
-  return Imported(path, import->skeleton, import->warnings);
+  SkeletonFile file = Imported(path, import->skeleton, import->warnings);
+  for (const GltfHumanBone& bone : document->humanoid) {
+    const int joint = import->joint_of_node[bone.node];
+    if (joint < 0) continue;
+    file.joint_of_bone.emplace_back(bone.bone, file.skeleton->joint(joint).id);
+  }
+  return file;
 }
 
 absl::StatusOr<SkeletonFile> FromJson(const std::string& path) {

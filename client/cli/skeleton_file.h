@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/cli/bvh_clip.h"
@@ -20,6 +22,8 @@ struct SkeletonFile {
   v1::Skeleton message;
   // Of a BVH file.
   std::optional<BvhClip> clip;
+  // Of a VRM file: which of its joints are the humanoid's bones, as it says.
+  std::vector<std::pair<std::string, std::string>> joint_of_bone;
 };
 
 // Reads what the name's end says: `.bvh`, `.urdf`, `.gltf`, `.glb`, or `.json`:

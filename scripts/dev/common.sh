@@ -7,7 +7,8 @@ readonly BUF=tools/node/node_modules/.bin/buf
 readonly BUILD_PACKAGES=(cmake ninja-build g++ libeigen3-dev libabsl-dev
   libprotobuf-dev protobuf-compiler libgrpc-dev libgrpc++-dev
   protobuf-compiler-grpc libspdlog-dev libcli11-dev libtinyxml2-dev
-  nlohmann-json3-dev zlib1g-dev libgtest-dev libgmock-dev libbenchmark-dev)
+  nlohmann-json3-dev liblo-dev zlib1g-dev libgtest-dev libgmock-dev
+  libbenchmark-dev)
 
 # say <text>...: a progress line with the time since the start.
 say() {

@@ -19,23 +19,39 @@ namespace {
 struct Source {
   std::shared_ptr<const Skeleton> skeleton;
   std::optional<BvhClip> clip;
+  std::vector<std::pair<std::string, std::string>> joint_of_bone;
 };
 
 absl::StatusOr<Source> ReadSource(const std::string& path,
                                   std::optional<double> unit_m) {
   const std::vector<absl::string_view> bundled = BundledSkeletonNames();
   if (std::find(bundled.begin(), bundled.end(), path) != bundled.end()) {
-    return Source{BundledSkeleton(path).value(), std::nullopt};
+    return Source{BundledSkeleton(path).value(), std::nullopt, {}};
   }
   absl::StatusOr<SkeletonFile> file = ReadSkeletonFile(path, unit_m);
   if (!file.ok()) return file.status();
-  Source source = {std::move(file->skeleton), std::move(file->clip)};
+  Source source = {std::move(file->skeleton), std::move(file->clip),
+                   std::move(file->joint_of_bone)};
   if (absl::EndsWithIgnoreCase(path, ".urdf")) {
     auto floating = WithFloatingBase(source.skeleton);
     if (!floating.ok()) return InFile(path, floating.status());
     source.skeleton = *std::move(floating);
   }
   return source;
+}
+
+// `overrides`, and what the file says of roles that they do not name.
+std::vector<JointMapOverride> RolesOf(
+    const Source& source, absl::Span<const JointMapOverride> overrides) {
+  std::vector<JointMapOverride> roles(overrides.begin(), overrides.end());
+  if (source.joint_of_bone.empty()) return roles;
+  for (JointMapOverride& told : OverridesOfHumanoid(source.joint_of_bone)) {
+    const bool is_named = std::any_of(
+        overrides.begin(), overrides.end(),
+        [&told](const auto& given) { return given.role == told.role; });
+    if (!is_named) roles.push_back(std::move(told));
+  }
+  return roles;
 }
 
 absl::StatusOr<std::vector<JointMapOverride>> EntriesFrom(
@@ -79,8 +95,9 @@ absl::StatusOr<BodyFile> ReadBodyFile(
     body.positions = poses.rightCols(poses.cols() - first);
   }
   const ClipView* clip = view ? &*view : nullptr;
+  body.roles = RolesOf(*source, overrides);
   const absl::StatusOr<JointMap> map =
-      ProposeJointMap(*skeleton, overrides, clip);
+      ProposeJointMap(*skeleton, body.roles, clip);
   if (!map.ok()) return InFile(path, map.status());
   absl::StatusOr<std::shared_ptr<const BodyModel>> model =
       MakeBodyModel(skeleton, *map, clip);

@@ -20,6 +20,8 @@ namespace gelenk::cli {
 struct BodyFile {
   std::string name;
   std::shared_ptr<const BodyModel> model;
+  // What was told of its joint map: by the file itself (VRM), or by the user.
+  std::vector<JointMapOverride> roles;
   // A column a frame; none for files without motion. A first frame that is no
   // part of the motion is left out.
   Eigen::MatrixXd positions;
@@ -32,7 +34,8 @@ struct BodyFile {
 };
 
 // A file as ReadSkeletonFile takes it, or the name of a bundled skeleton
-// ("humanoid"). A robot gets a base that floats. Errors name the file; a body
+// ("humanoid"). A robot gets a base that floats. `overrides` go before what a
+// VRM file says of its bones. Errors name the file; a body
 // without pelvis or limbs is INVALID_ARGUMENT.
 absl::StatusOr<BodyFile> ReadBodyFile(
     const std::string& path, std::optional<double> unit_m,

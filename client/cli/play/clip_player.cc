@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "client/cli/made_session.h"
 #include "client/cli/play/target_frame.h"
 #include "client/cli/unique_id.h"
 #include "client/cli/uploaded_skeleton.h"
@@ -33,22 +34,6 @@ client::SessionSpec SpecFor(const PlayerOptions& options,
   *spec.session.mutable_session() = SessionFor(playback);
   spec.frame_policy = options.policy;
   return spec;
-}
-
-// Deletes the session and its skeleton; what is gone already is no error.
-void DeleteFrom(client::Connection& connection, const std::string& id) {
-  client::CallOptions options;
-  options.affinity_key = id;
-  v1::DeleteSessionRequest session;
-  session.set_name(absl::StrCat("sessions/", id));
-  session.set_allow_missing(true);
-  connection.Call(&v1::SessionService::Stub::DeleteSession, session, options)
-      .IgnoreError();
-  v1::DeleteSkeletonRequest skeleton;
-  skeleton.set_name(absl::StrCat("skeletons/", id));
-  skeleton.set_allow_missing(true);
-  connection.Call(&v1::KinematicsService::Stub::DeleteSkeleton, skeleton)
-      .IgnoreError();
 }
 
 // Sends the frames of a clip from a thread of its own.
@@ -165,7 +150,7 @@ absl::Status PlayClip(const std::shared_ptr<client::Connection>& connection,
                             statistics.round_trips.Quantile(1)};
     stream->reset();
   }
-  DeleteFrom(*connection, spec.session.session_id());
+  DeleteMade(*connection, spec);
   if (status.ok()) HoldPoses(playback);
   return status;
 }

@@ -43,12 +43,21 @@ struct GltfScene {
   std::vector<int> roots;
 };
 
+// A bone of the humanoid that a VRM file says it is ("leftUpperArm").
+struct GltfHumanBone {
+  std::string bone;
+  int node = -1;
+};
+
 struct GltfDocument {
   std::vector<GltfNode> nodes;
   std::vector<GltfSkin> skins;
   std::vector<GltfScene> scenes;
   // The one that is shown; -1 without scenes.
   int scene = -1;
+  // Of VRM 0 and 1, bones that have a role (retarget/body_role.h); empty for
+  // other files.
+  std::vector<GltfHumanBone> humanoid;
 };
 
 }  // namespace gelenk

@@ -14,6 +14,7 @@
 #include "gelenk/formats/unique_names.h"
 #include "gelenk/import/gltf_json.h"
 #include "gelenk/math/rotation.h"
+#include "gelenk/retarget/body_role.h"
 #include "gelenk/skeleton/joint_check.h"
 
 namespace gelenk {
@@ -28,12 +29,18 @@ constexpr double kMaxMagnitude = 1e9;
 constexpr double kAffine = 1e-5;
 
 // Members of the objects that are read, and what is in them.
-constexpr absl::string_view kKeptAtTop[] = {"asset",  "nodes", "skins",
-                                            "scenes", "scene", "animations"};
+constexpr absl::string_view kKeptAtTop[] = {
+    "asset", "nodes", "skins", "scenes", "scene", "animations", "extensions"};
 constexpr absl::string_view kKeptBelow[] = {
-    "channels",    "children", "joints", "matrix",   "name",
-    "node",        "nodes",    "path",   "rotation", "scale",
-    "translation", "target",   "skin",   "version"};
+    "VRM", "VRMC_vrm", "bone", "channels", "children", "humanBones", "humanoid",
+    "joints", "matrix", "name", "node", "nodes", "path", "rotation", "scale",
+    "skin", "target", "translation", "version",
+    // Bones of VRM 1 that have a role.
+    "hips", "chest", "upperChest", "neck", "head", "leftShoulder",
+    "leftUpperArm", "leftLowerArm", "leftHand", "rightShoulder",
+    "rightUpperArm", "rightLowerArm", "rightHand", "leftUpperLeg",
+    "leftLowerLeg", "leftFoot", "leftToes", "rightUpperLeg", "rightLowerLeg",
+    "rightFoot", "rightToes"};
 
 // A member of an object, and its path for messages.
 struct Member {
@@ -60,6 +67,8 @@ class GltfParser {
   void ReadSkin(const Member& member, GltfSkin& skin);
   void ReadAnimation(const Member& member);
   void ReadScenes();
+  void ReadHumanoid();
+  void ReadHumanBone(const std::string& bone, const Member& node);
 
   // Sets the nodes' parents.
   void ConnectNodes();
@@ -293,6 +302,35 @@ void GltfParser::ReadScenes() {
             document_.scene);
 }
 
+void GltfParser::ReadHumanBone(const std::string& bone, const Member& node) {
+  if (!RoleOfHumanoidBone(bone)) return;
+  GltfHumanBone read = {bone, -1};
+  if (ReadIndex(node, "node", document_.nodes.size(), read.node)) {
+    document_.humanoid.push_back(std::move(read));
+  }
+}
+
+// VRM 0 has a list of {"bone", "node"}, VRM 1 an object by bones.
+void GltfParser::ReadHumanoid() {
+  const Member extensions = Find(root_, "extensions");
+  const auto bones_of = [&](const char* extension) {
+    return Find(Find(Find(extensions, extension), "humanoid"), "humanBones");
+  };
+  const Member by_name = bones_of("VRMC_vrm");
+  if (by_name && by_name.value->is_object()) {
+    for (const auto& [bone, value] : by_name.value->items()) {
+      const Member member = {&value, absl::StrCat(by_name.path, ".", bone)};
+      ReadHumanBone(bone, Find(member, "node"));
+    }
+    return;
+  }
+  ForEach(bones_of("VRM"), [&](const Member& member) {
+    const Member bone = Find(member, "bone");
+    if (!bone || !bone.value->is_string()) return;
+    ReadHumanBone(bone.value->get<std::string>(), Find(member, "node"));
+  });
+}
+
 void GltfParser::ConnectNodes() {
   for (size_t i = 0; i < document_.nodes.size(); ++i) {
     for (int child : document_.nodes[i].children) {
@@ -359,6 +397,7 @@ absl::StatusOr<GltfDocument> GltfParser::Parse(const GltfBounds& bounds) {
   ForEach(Find(root_, "animations"),
           [this](const Member& member) { ReadAnimation(member); });
   ReadScenes();
+  ReadHumanoid();
   ConnectNodes();
   CheckSceneRoots();
   if (violations_.empty()) CheckForest();

@@ -2,12 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "client/cli/file_bytes.h"
 #include "client/cli/info/inspection.h"
+#include "client/cli/motion/body_file.h"
 #include "client/cli/skeleton_file.h"
 #include "convert/skeleton.h"
+#include "gelenk/retarget/humanoid.h"
 #include "tests/testing/gltf_files.h"
 #include "tests/testing/gripper_arm_urdf.h"
 #include "tests/testing/walking_bvh.h"
@@ -237,6 +243,68 @@ TEST_F(FilesTest, TheTreeOfADeepFileIsPrinted) {
   const auto file = ReadSkeletonFile(Write("deep.bvh", text), std::nullopt);
   ASSERT_TRUE(file.ok()) << file.status();
   EXPECT_THAT(InspectionText(Inspect(*file)), HasSubstr("└ j199"));
+}
+
+// The humanoid with names that say nothing, as a VRM of either version.
+std::string NamelessVrm(bool is_new) {
+  const auto body = MakeHumanoid();
+  const auto map = ProposeJointMap(*body);
+  nlohmann::json file = {{"asset", {{"version", "2.0"}}},
+                         {"scene", 0},
+                         {"scenes", {{{"nodes", {0}}}}}};
+  std::vector<int> joints;
+  for (int i = 0; i < body->joint_count(); ++i) {
+    const Joint& joint = body->joint(i);
+    Eigen::Vector3d place = joint.parent_from_joint.translation;
+    if (i == 0) place += body->rest_positions().head<3>();
+    file["nodes"].push_back({{"name", absl::StrCat("n", 7 * i % 23)},
+                             {"translation", {place[0], place[1], place[2]}}});
+    const int parent = body->FindJoint(joint.parent_id);
+    if (parent >= 0) file["nodes"][parent]["children"].push_back(i);
+    joints.push_back(i);
+  }
+  file["skins"] = {{{"joints", joints}}};
+  const std::vector<std::pair<std::string, BodyRole>> bones = {
+      {"hips", BodyRole::kPelvis},
+      {"head", BodyRole::kHead},
+      {"leftHand", BodyRole::kLeftHand},
+      {"rightFoot", BodyRole::kRightFoot},
+      {"leftUpperArm", BodyRole::kLeftUpperArm},
+      {"leftLowerArm", BodyRole::kLeftForearm}};
+  for (const auto& [bone, role] : bones) {
+    const int node = map->joint(role);
+    if (is_new) {
+      file["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"][bone]["node"] =
+          node;
+    } else {
+      file["extensions"]["VRM"]["humanoid"]["humanBones"].push_back(
+          {{"bone", bone}, {"node", node}});
+    }
+  }
+  return file.dump();
+}
+
+TEST_F(FilesTest, AVrmIsTakenAtItsWord) {
+  for (bool is_new : {false, true}) {
+    const absl::StatusOr<BodyFile> body =
+        ReadBodyFile(Write("hero.gltf", NamelessVrm(is_new)), std::nullopt);
+    ASSERT_TRUE(body.ok()) << body.status();
+    const JointMap& map = body->model->map;
+    const auto humanoid_map = ProposeJointMap(*MakeHumanoid());
+    for (BodyRole role :
+         {BodyRole::kPelvis, BodyRole::kLeftHand, BodyRole::kRightFoot}) {
+      EXPECT_EQ(map.roles[IndexOf(role)].evidence, RoleEvidence::kOverride);
+      EXPECT_EQ(map.joint(role), humanoid_map->joint(role));
+    }
+    // What the file does not name nobody plays.
+    EXPECT_FALSE(map.Has(BodyRole::kRightHand));
+    // The user has the last word.
+    const JointMapOverride given = {"left_hand", ""};
+    const absl::StatusOr<BodyFile> mended =
+        ReadBodyFile(Path("hero.gltf"), std::nullopt, {given});
+    ASSERT_TRUE(mended.ok()) << mended.status();
+    EXPECT_FALSE(mended->model->map.Has(BodyRole::kLeftHand));
+  }
 }
 
 }  // namespace

@@ -333,5 +333,42 @@ TEST(GltfReaderTest, AMillionFaultsAreCounted) {
               HasSubstr("; and 999980 more"));
 }
 
+std::vector<std::string> HumanoidOf(absl::string_view extensions) {
+  const GltfDocument document = Read(Gltf(absl::StrCat(
+      "\"nodes\": [{}, {}, {}], \"extensions\": {", extensions, "}")));
+  std::vector<std::string> bones;
+  for (const GltfHumanBone& bone : document.humanoid) {
+    bones.push_back(absl::StrCat(bone.bone, "=", bone.node));
+  }
+  return bones;
+}
+
+TEST(GltfReaderTest, AVrmSaysWhichNodeIsWhichBone) {
+  const std::string vrm0 =
+      "\"VRM\": {\"humanoid\": {\"humanBones\": ["
+      "{\"bone\": \"hips\", \"node\": 2, \"useDefaultValues\": true}, "
+      "{\"bone\": \"leftEye\", \"node\": 0}, "
+      "{\"bone\": \"leftUpperArm\", \"node\": 1}]}}";
+  const std::string vrm1 =
+      "\"VRMC_vrm\": {\"specVersion\": \"1.0\", \"humanoid\": "
+      "{\"humanBones\": {\"hips\": {\"node\": 2}, "
+      "\"leftThumbDistal\": {\"node\": 0}, "
+      "\"leftUpperArm\": {\"node\": 1}}}}";
+  // Bones without a role are of no use.
+  EXPECT_THAT(HumanoidOf(vrm0), ElementsAre("hips=2", "leftUpperArm=1"));
+  EXPECT_THAT(HumanoidOf(vrm1), ElementsAre("hips=2", "leftUpperArm=1"));
+  EXPECT_THAT(HumanoidOf(""), IsEmpty());
+}
+
+TEST(GltfReaderTest, AVrmBoneWithoutANodeIsNamed) {
+  const std::string file = Gltf(
+      "\"nodes\": [{}], \"extensions\": {\"VRMC_vrm\": {\"humanoid\": "
+      "{\"humanBones\": {\"head\": {\"node\": 7}}}}}");
+  EXPECT_THAT(
+      Lines(file),
+      ElementsAre("extensions.VRMC_vrm.humanoid.humanBones.head.node: want a "
+                  "node, 0 to 0, got 7"));
+}
+
 }  // namespace
 }  // namespace gelenk
