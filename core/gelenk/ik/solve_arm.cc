@@ -32,20 +32,25 @@ constexpr double kSameEnergy = 1e-6;
 
 // A warm descent that took so many iterations to move a joint so far may have
 // started in a singular pose: others take three, rad or m.
-constexpr int kForkIterations = 4;
+constexpr int kForkIterations = 5;
 constexpr double kForkMove = 0.01;
 // Nearer to a limit than this an arm has little room, rad or m.
 constexpr double kNarrow = 1;
-// The square of how much longer the other way from a singular pose may be.
+// The square of how much longer the other way from a singular pose may be, and
+// how much more energy may be left where neither gets there in a frame.
 constexpr double kAsShort = 2;
+constexpr double kAsClose = 2;
 
 bool Converged(const ArmAttempt& attempt) {
   return attempt.end == AttemptEnd::kConverged;
 }
 
 bool IsFork(const ArmRequest& request, const ArmAttempt& attempt, double move) {
-  return request.start == SolveStart::kWarm && Converged(attempt) &&
-         attempt.iterations >= kForkIterations && move > kForkMove;
+  const bool stopped_short =
+      attempt.end == AttemptEnd::kStationary && attempt.pushed_at_limit;
+  return request.start == SolveStart::kWarm && move > kForkMove &&
+         attempt.iterations >= kForkIterations &&
+         (Converged(attempt) || stopped_short);
 }
 
 class ArmSolve {
@@ -127,11 +132,16 @@ class ArmSolve {
       q[i] = std::clamp(2 * start_[i] - q_[i], settings_.lower[i],
                         settings_.upper[i]);
     }
-    const ArmAttempt attempt = kernel_.descend(layout_, settings_, target_, q);
+    ArmAttempt attempt = kernel_.descend(layout_, settings_, target_, q);
     Count(attempt);
-    if (Converged(attempt) && IsOpposite(q) && LeastRoom(q) > room) {
-      Replace(attempt, q);
+    if (!Converged(attempt) && !Converged(best_)) {
+      attempt = kernel_.settle(layout_, settings_, kLongStep, target_, q);
+      Count(attempt);
     }
+    const bool as_close =
+        Converged(attempt) ||
+        attempt.errors.energy <= kAsClose * best_.errors.energy;
+    if (as_close && IsOpposite(q) && LeastRoom(q) > room) Replace(attempt, q);
   }
 
   // Of `q` to a limit, rad or m.

@@ -127,7 +127,7 @@ TEST_P(LiveHandTest, PastTheReachAndBack) {
 // wait.
 TEST_P(LiveHandTest, ComesBackAtOtherSpeeds) {
   const auto [from, way] = WayOutOf(hand_);
-  for (const int out : {250, 360, 500}) {
+  for (const int out : {130, 180, 250, 360, 500}) {
     Stream stream(hand_, false);
     for (int i = 1; i <= 2 * out; ++i) {
       const int at = i <= out ? i : 2 * out - i;
