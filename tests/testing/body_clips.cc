@@ -38,10 +38,13 @@ absl::StatusOr<BodyClip> BodyClipFromBvh(absl::string_view text,
   return clip;
 }
 
+std::string FileText(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 absl::StatusOr<BodyClip> ReadBodyClip(const fs::path& bvh) {
-  std::ifstream file(bvh, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  return BodyClipFromBvh(text, bvh.stem().string());
+  return BodyClipFromBvh(FileText(bvh), bvh.stem().string());
 }
 
 std::vector<BodyPose> BodyPosesOf(const BodyModel& model,

@@ -29,6 +29,8 @@ struct BodyClip {
 // The text of a BVH file: imported, mapped and modelled with its own motion.
 absl::StatusOr<BodyClip> BodyClipFromBvh(absl::string_view text,
                                          std::string name);
+// Empty where there is no file.
+std::string FileText(const std::filesystem::path& path);
 absl::StatusOr<BodyClip> ReadBodyClip(const std::filesystem::path& bvh);
 
 // The poses of the clip, canonical.
