@@ -340,12 +340,70 @@ TEST_F(CommandLineTest, ClipsAreSmoothedMirroredAndConverted) {
   EXPECT_EQ(Run({"clip", "convert", "walk.bvh", "--out", "b.glb"}).exit_code,
             0);
   EXPECT_THAT(Read(folder_ / "b.glb"), StartsWith("glTF"));
-  const Ending model = Run({"clip", "mirror", "b.glb", "--out", "c.bvh"});
-  EXPECT_EQ(model.exit_code, 1);
-  EXPECT_THAT(model.err, HasSubstr("want a .bvh file"));
+  EXPECT_EQ(Run({"clip", "mirror", "b.glb", "--out", "c.bvh"}).exit_code, 0);
+  EXPECT_TRUE(ReadBvh(Read(folder_ / "c.bvh")).ok());
+  const Ending robot = Run({"clip", "mirror", "arm.urdf", "--out", "c.bvh"});
+  EXPECT_EQ(robot.exit_code, 1);
+  EXPECT_THAT(robot.err, HasSubstr("want a .bvh, .gltf or .glb file"));
   const Ending bad = Run({"clip", "convert", "walk.bvh", "--out", "b.fbx"});
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_THAT(bad.err, HasSubstr(".glb"));
+}
+
+TEST_F(CommandLineTest, ClipsTellWhatIsInThem) {
+  const json walk = RunJson({"clip", "info", "walk.bvh"});
+  EXPECT_EQ(walk["frames"], kFrames);
+  EXPECT_EQ(walk["unit_m"], 0.01);
+  EXPECT_GT(walk["root_path_m"].get<double>(), 0);
+  ASSERT_EQ(Run({"clip", "convert", "walk.bvh", "--out", "d.glb"}).exit_code,
+            0);
+  const json model = RunJson({"clip", "info", "d.glb"});
+  EXPECT_EQ(model["animations"].size(), 1u);
+  EXPECT_NEAR(model["duration_s"].get<double>(),
+              walk["duration_s"].get<double>(), 1e-6);
+  EXPECT_THAT(Run({"clip", "info", "walk.bvh"}).out,
+              HasSubstr("way of the root"));
+  const Ending bad = Run({"clip", "info", "d.glb", "--animation", "1"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("--animation: want 0 to 0, got 1"));
+}
+
+TEST_F(CommandLineTest, ClipsAreCutPlantedAndBlended) {
+  const auto frames_of = [this](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "clip");
+    arguments.insert(arguments.end(), {"--out", "g.bvh"});
+    const Ending ending = Run(arguments);
+    EXPECT_EQ(ending.exit_code, 0) << ending.err;
+    const auto written = ReadBvh(Read(folder_ / "g.bvh"));
+    return written.ok() ? written->frame_count() : -1;
+  };
+  EXPECT_EQ(frames_of({"plant", "walk.bvh"}), kFrames);
+  EXPECT_EQ(frames_of({"crop", "walk.bvh", "--start", "0.2", "--end", "0.4"}),
+            11);
+  EXPECT_EQ(frames_of({"resample", "walk.bvh", "--rate", "25"}),
+            (kFrames + 1) / 2);
+  ASSERT_EQ(Run({"clip", "mirror", "walk.bvh", "--out", "m.bvh"}).exit_code, 0);
+  EXPECT_EQ(frames_of({"blend", "walk.bvh", "m.bvh"}), kFrames);
+  EXPECT_EQ(frames_of({"blend", "walk.bvh", "m.bvh", "--below", "LeftArm",
+                       "--part", "1"}),
+            kFrames);
+  EXPECT_EQ(frames_of({"blend", "walk.bvh", "m.bvh", "--beyond", "walk.bvh"}),
+            kFrames);
+  EXPECT_GT(
+      frames_of({"blend", "walk.bvh", "m.bvh", "--at", "0.3", "--fade", "0.2"}),
+      kFrames);
+  Ending bad = Run({"clip", "blend", "walk.bvh", "m.bvh", "--below", "Tail",
+                    "--out", "h.bvh"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("--below: no joint \"Tail\""));
+  EXPECT_FALSE(fs::exists(folder_ / "h.bvh"));
+  ASSERT_EQ(
+      Run({"retarget", "walk.bvh", "--onto", "humanoid", "--out", "other.bvh"})
+          .exit_code,
+      0);
+  bad = Run({"clip", "blend", "walk.bvh", "other.bvh", "--out", "h.bvh"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("retarget it first"));
 }
 
 TEST_F(CommandLineTest, BadFilesAreToldByPlace) {

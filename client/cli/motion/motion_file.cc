@@ -1,0 +1,102 @@
+#include "client/cli/motion/motion_file.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "client/cli/file_bytes.h"
+#include "client/cli/skeleton_file.h"
+#include "gelenk/formats/bvh_clip.h"
+#include "gelenk/import/gltf_animation.h"
+#include "gelenk/import/gltf_clip.h"
+#include "gelenk/import/gltf_import.h"
+#include "gelenk/import/gltf_reader.h"
+
+namespace gelenk::cli {
+namespace {
+
+// Reads buffers beside the file, and nothing that is elsewhere.
+OpenUri OpenBeside(const std::string& path) {
+  return [folder = std::filesystem::path(path).parent_path()](
+             absl::string_view uri) -> absl::StatusOr<std::string> {
+    const std::filesystem::path name{std::string(uri)};
+    if (name.empty() || name != name.filename()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("want a file in the same folder, got \"", uri, "\""));
+    }
+    return ReadFile((folder / name).string());
+  };
+}
+
+absl::StatusOr<MotionFile> ReadBvhMotion(const std::string& path,
+                                         const MotionFileOptions& options) {
+  absl::StatusOr<BvhClip> file = ReadBvhClip(path, options.unit_m);
+  if (!file.ok()) return file.status();
+  absl::StatusOr<MotionClip> clip =
+      ClipFromBvh(file->document, file->import, BaseName(path));
+  if (!clip.ok()) return InFile(path, clip.status());
+  MotionFile motion{.clip = *std::move(clip)};
+  motion.unit_m = file->import.unit_m;
+  motion.warnings = file->import.warnings;
+  motion.form = *std::move(file);
+  return motion;
+}
+
+absl::StatusOr<MotionFile> ReadGltfMotion(const std::string& path,
+                                          const MotionFileOptions& options) {
+  const absl::StatusOr<std::string> bytes = ReadFile(path);
+  if (!bytes.ok()) return bytes.status();
+  const absl::StatusOr<GltfDocument> document = ReadGltf(*bytes);
+  if (!document.ok()) return InFile(path, document.status());
+  const absl::StatusOr<GltfImport> import =
+      ImportGltf(*document, {.unit_m = options.unit_m.value_or(1)});
+  if (!import.ok()) return InFile(path, import.status());
+  const absl::StatusOr<std::vector<GltfAnimation>> animations =
+      ReadGltfAnimations(*bytes, *document, OpenBeside(path));
+  if (!animations.ok()) return InFile(path, animations.status());
+  if (animations->empty()) {
+    return InFile(path,
+                  absl::InvalidArgumentError("the file has no animation"));
+  }
+  const int count = static_cast<int>(animations->size());
+  const int index = options.animation;
+  if (index < 0 || index >= count) {
+    return InFile(path,
+                  absl::InvalidArgumentError(absl::StrCat(
+                      "--animation: want 0 to ", count - 1, ", got ", index)));
+  }
+  absl::StatusOr<GltfClip> clip =
+      ClipFromGltf((*animations)[index], *document, *import);
+  if (!clip.ok()) return InFile(path, clip.status());
+  MotionFile motion{.clip = std::move(clip->clip)};
+  motion.unit_m = import->unit_m;
+  motion.warnings = import->warnings;
+  motion.warnings.insert(motion.warnings.end(), clip->warnings.begin(),
+                         clip->warnings.end());
+  for (const GltfAnimation& animation : *animations) {
+    motion.animation_names.push_back(animation.name);
+  }
+  return motion;
+}
+
+}  // namespace
+
+absl::StatusOr<MotionFile> ReadMotionFile(const std::string& path,
+                                          const MotionFileOptions& options) {
+  if (absl::EndsWithIgnoreCase(path, ".gltf") ||
+      absl::EndsWithIgnoreCase(path, ".glb")) {
+    return ReadGltfMotion(path, options);
+  }
+  if (!absl::EndsWithIgnoreCase(path, ".bvh")) {
+    return InFile(
+        path, absl::InvalidArgumentError("want a .bvh, .gltf or .glb file"));
+  }
+  if (options.animation != 0) {
+    return InFile(path, absl::InvalidArgumentError(
+                            "--animation: a BVH file has only one motion"));
+  }
+  return ReadBvhMotion(path, options);
+}
+
+}  // namespace gelenk::cli

@@ -1,0 +1,40 @@
+// Files that hold motion: BVH, and glTF with its animations.
+#ifndef CLIENT_CLI_MOTION_MOTION_FILE_H_
+#define CLIENT_CLI_MOTION_MOTION_FILE_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/cli/bvh_clip.h"
+#include "gelenk/motion/motion_clip.h"
+
+namespace gelenk::cli {
+
+struct MotionFileOptions {
+  // Metres per unit; unset means guessed of BVH, 1 of glTF.
+  std::optional<double> unit_m = std::nullopt;
+  // Of glTF.
+  int animation = 0;
+};
+
+struct MotionFile {
+  MotionClip clip;
+  // What a BVH file's own form is written back into.
+  std::optional<BvhClip> form = std::nullopt;
+  double unit_m = 1;
+  // Of glTF, in order; empty names as the file has them.
+  std::vector<std::string> animation_names = {};
+  std::vector<std::string> warnings = {};
+};
+
+// Reads a .bvh, .gltf or .glb; buffers of a .gltf may be files in its folder.
+// Errors name the file; INVALID_ARGUMENT for one without motion or without that
+// animation.
+absl::StatusOr<MotionFile> ReadMotionFile(
+    const std::string& path, const MotionFileOptions& options = {});
+
+}  // namespace gelenk::cli
+
+#endif  // CLIENT_CLI_MOTION_MOTION_FILE_H_
