@@ -11,11 +11,14 @@
 #include <cstring>
 
 #include "absl/memory/memory.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/cli/vmc/osc_packet.h"
 
 namespace gelenk::cli {
 namespace {
+
+constexpr int kMaxPort = 65535;
 
 // "host:port", or "port" alone on this machine.
 absl::StatusOr<addrinfo*> Resolve(const std::string& address) {
@@ -24,6 +27,12 @@ absl::StatusOr<addrinfo*> Resolve(const std::string& address) {
       colon == std::string::npos ? "127.0.0.1" : address.substr(0, colon);
   const std::string port =
       colon == std::string::npos ? address : address.substr(colon + 1);
+  // getaddrinfo takes larger ones modulo 65536.
+  int number = 0;
+  if (!absl::SimpleAtoi(port, &number) || number < 0 || number > kMaxPort) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "want HOST:PORT, a port up to ", kMaxPort, ", got \"", address, "\""));
+  }
   addrinfo hints = {};
   hints.ai_family = AF_INET;
   hints.ai_socktype = SOCK_DGRAM;

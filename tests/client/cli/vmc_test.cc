@@ -371,6 +371,8 @@ TEST_F(VmcBridgeTest, TrackersMoveABody) {
 TEST(UdpSocketTest, BadAddressesAreNamed) {
   EXPECT_THAT(UdpSocket::Connect("nowhere").status(),
               Fails(absl::StatusCode::kInvalidArgument, "\"nowhere\""));
+  EXPECT_THAT(UdpSocket::Listen("99999").status(),
+              Fails(absl::StatusCode::kInvalidArgument, "a port up to 65535"));
   const auto taken = *UdpSocket::Listen("0");
   EXPECT_THAT(UdpSocket::Listen(absl::StrCat(taken->port())).status(),
               Fails(absl::StatusCode::kUnavailable, "in use"));
