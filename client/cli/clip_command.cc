@@ -67,9 +67,9 @@ absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
     if (!read.ok()) return read.status();
     reference = *std::move(read);
   }
-  const absl::StatusOr<Measured> measured =
-      Measure(*body, reference ? &*reference : nullptr);
-  if (!measured.ok()) return measured.status();
+  const absl::StatusOr<MeasuredMotion> measured =
+      MeasureBody(*body, reference ? &*reference : nullptr);
+  if (!measured.ok()) return InFile(options.path, measured.status());
   *output += options.format == Format::kJson ? JsonText(MeasuredJson(*measured))
                                              : MeasuredText(*measured);
   if (options.picture_path.empty()) return absl::OkStatus();

@@ -15,7 +15,6 @@
 #include "client/cli/service.h"
 #include "client/cli/text/table.h"
 #include "gelenk/motion/clip_frames.h"
-#include "gelenk/retarget/retarget_clip.h"
 
 namespace gelenk::cli {
 namespace {
@@ -47,14 +46,6 @@ absl::StatusOr<Eigen::MatrixXd> RetargetLive(const std::string& server,
   return FollowClip((*service)->connection(), source, target);
 }
 
-absl::StatusOr<Eigen::MatrixXd> Retarget(const BodyFile& source,
-                                         const BodyFile& target) {
-  absl::StatusOr<RetargetedClip> clip = RetargetClip(
-      source.model, target.model, source.positions, source.frame_time_s);
-  if (!clip.ok()) return clip.status();
-  return std::move(clip->positions);
-}
-
 absl::Status RunRetarget(const RetargetCommandOptions& options,
                          const std::string& server, std::string* output) {
   MapFile map;
@@ -74,8 +65,9 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
       ReadBodyFile(options.onto, std::nullopt, map.target);
   if (!target.ok()) return target.status();
   const absl::StatusOr<Eigen::MatrixXd> positions =
-      options.live ? RetargetLive(server, *source, *target)
-                   : Retarget(*source, *target);
+      options.live
+          ? RetargetLive(server, *source, *target)
+          : RetargetBody(*source, target->model, LookAhead::kWholeClip, {});
   if (!positions.ok()) return positions.status();
   const absl::StatusOr<MotionClip> clip = ClipFromFrames(
       target->model->skeleton, *positions,
@@ -89,7 +81,7 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
   BodyFile made = *target;
   made.positions = *positions;
   made.frame_time_s = source->frame_time_s;
-  const absl::StatusOr<Measured> measured = Measure(made, &*source);
+  const absl::StatusOr<MeasuredMotion> measured = MeasureBody(made, &*source);
   if (!measured.ok()) return measured.status();
   std::vector<std::string> written = {options.out_path};
   if (!options.picture_path.empty()) {

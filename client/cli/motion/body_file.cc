@@ -7,8 +7,6 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/cli/file_bytes.h"
-#include "gelenk/kinematics/forward_kinematics.h"
-#include "gelenk/motion/first_frame.h"
 #include "gelenk/retarget/floating_base.h"
 #include "gelenk/retarget/humanoid.h"
 
@@ -82,52 +80,18 @@ absl::StatusOr<BodyFile> ReadBodyFile(
     absl::Span<const JointMapOverride> overrides) {
   absl::StatusOr<Source> source = ReadSource(path, unit_m);
   if (!source.ok()) return source.status();
-  const std::shared_ptr<const Skeleton>& skeleton = source->skeleton;
-  BodyFile body;
-  body.name = BaseName(path);
-  int first = 0;
-  std::optional<ClipView> view;
-  if (source->clip && source->clip->frame_count() > 0) {
-    const Eigen::MatrixXd& poses = source->clip->poses;
-    first = FindFirstFrameJump(*skeleton, poses).has_value() ? 1 : 0;
-    body.frame_time_s = source->clip->document.frame_time_s;
-    view.emplace(ClipView{poses, body.frame_time_s, first});
-    body.positions = poses.rightCols(poses.cols() - first);
+  Eigen::MatrixXd frames;
+  double frame_time_s = 0;
+  if (source->clip) {
+    frames = source->clip->poses;
+    frame_time_s = source->clip->document.frame_time_s;
   }
-  const ClipView* clip = view ? &*view : nullptr;
-  body.roles = RolesOf(*source, overrides);
-  const absl::StatusOr<JointMap> map =
-      ProposeJointMap(*skeleton, body.roles, clip);
-  if (!map.ok()) return InFile(path, map.status());
-  absl::StatusOr<std::shared_ptr<const BodyModel>> model =
-      MakeBodyModel(skeleton, *map, clip);
-  if (!model.ok()) return InFile(path, model.status());
-  body.model = *std::move(model);
-  if (first == 1) {
-    body.notes.push_back("frame 0 is no part of the motion and left out");
-  }
-  body.notes.insert(body.notes.end(), map->notes.begin(), map->notes.end());
-  body.notes.insert(body.notes.end(), body.model->notes.begin(),
-                    body.model->notes.end());
-  body.clip = std::move(source->clip);
-  return body;
-}
-
-std::vector<BodyPose> BodyPosesOf(const BodyModel& model,
-                                  const Eigen::MatrixXd& positions) {
-  std::vector<BodyPose> poses(positions.cols());
-  WorldTransforms world_from_joints;
-  for (int f = 0; f < positions.cols(); ++f) {
-    ForwardKinematics(*model.skeleton, positions.col(f), world_from_joints);
-    ReadBodyPose(model, world_from_joints, poses[f]);
-  }
-  return poses;
-}
-
-ContactLabels ContactsOf(const BodyFile& body,
-                         absl::Span<const BodyPose> poses) {
-  return LabelContacts(FootPointsOf(poses), body.frame_time_s,
-                       FeetOf(*body.model));
+  std::vector<JointMapOverride> roles = RolesOf(*source, overrides);
+  absl::StatusOr<MovingBody> body =
+      MakeMovingBody(source->skeleton, std::move(frames), frame_time_s, roles);
+  if (!body.ok()) return InFile(path, body.status());
+  return BodyFile{*std::move(body), BaseName(path), std::move(roles),
+                  std::move(source->clip)};
 }
 
 absl::StatusOr<MapFile> ReadMapFile(const std::string& path) {

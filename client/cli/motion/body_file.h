@@ -3,8 +3,6 @@
 #ifndef CLIENT_CLI_MOTION_BODY_FILE_H_
 #define CLIENT_CLI_MOTION_BODY_FILE_H_
 
-#include <Eigen/Core>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,25 +10,16 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "client/cli/skeleton_file.h"
-#include "gelenk/retarget/body_model.h"
-#include "gelenk/retarget/motion_quality.h"
+#include "gelenk/retarget/moving_body.h"
 
 namespace gelenk::cli {
 
-struct BodyFile {
+struct BodyFile : MovingBody {
   std::string name;
-  std::shared_ptr<const BodyModel> model;
   // What was told of its joint map: by the file itself (VRM), or by the user.
   std::vector<JointMapOverride> roles;
-  // A column a frame; none for files without motion. A first frame that is no
-  // part of the motion is left out.
-  Eigen::MatrixXd positions;
-  double frame_time_s = 0;
   // What a BVH file's own form is written back into.
   std::optional<BvhClip> clip;
-  std::vector<std::string> notes;
-
-  bool has_motion() const { return positions.cols() > 0; }
 };
 
 // A file as ReadSkeletonFile takes it, or the name of a bundled skeleton
@@ -40,14 +29,6 @@ struct BodyFile {
 absl::StatusOr<BodyFile> ReadBodyFile(
     const std::string& path, std::optional<double> unit_m,
     absl::Span<const JointMapOverride> overrides = {});
-
-// The anatomical poses of a motion.
-std::vector<BodyPose> BodyPosesOf(const BodyModel& model,
-                                  const Eigen::MatrixXd& positions);
-
-// Where its feet stand; the poses are its own.
-ContactLabels ContactsOf(const BodyFile& body,
-                         absl::Span<const BodyPose> poses);
 
 // Both maps as a file has them: {"source": [{"role", "joint"}], "target": ..}.
 struct MapFile {

@@ -1,6 +1,5 @@
 #include "client/cli/motion/quality_text.h"
 
-#include <cmath>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -8,10 +7,6 @@
 
 namespace gelenk::cli {
 namespace {
-
-// The time steps of a motion and of the one it was made from differ by rounding
-// of the file at most.
-constexpr double kFrameTimeSlack = 1e-3;
 
 Json QualityJson(const MotionQuality& quality) {
   return {{"skate_cm_s", quality.skate.label_cm_s},
@@ -58,41 +53,7 @@ constexpr Line kLines[] = {
 
 }  // namespace
 
-absl::StatusOr<Measured> Measure(const BodyFile& body,
-                                 const BodyFile* reference) {
-  if (!body.has_motion()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("\"", body.name, "\": no motion to measure"));
-  }
-  const std::vector<BodyPose> poses = BodyPosesOf(*body.model, body.positions);
-  const BodyMotionView motion = {*body.model, poses, body.frame_time_s};
-  Measured measured;
-  if (reference == nullptr) {
-    measured.quality = MeasureMotion(motion, ContactsOf(body, poses));
-    return measured;
-  }
-  if (reference->positions.cols() != body.positions.cols() ||
-      std::abs(reference->frame_time_s - body.frame_time_s) >
-          kFrameTimeSlack * body.frame_time_s) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "\"", body.name, "\" has ", body.positions.cols(), " frames of ",
-        body.frame_time_s, " s, its reference ", reference->positions.cols(),
-        " of ", reference->frame_time_s, " s"));
-  }
-  const std::vector<BodyPose> source_poses =
-      BodyPosesOf(*reference->model, reference->positions);
-  const BodyMotionView source = {*reference->model, source_poses,
-                                 reference->frame_time_s};
-  const ContactLabels labels = ContactsOf(*reference, source_poses);
-  const FlatGround ground;
-  measured.source = MeasureMotion(source, labels);
-  measured.quality = MeasureMotion(motion, labels, &ground);
-  measured.comparison =
-      CompareMotion(source, *measured.source, motion, measured.quality);
-  return measured;
-}
-
-std::string MeasuredText(const Measured& measured) {
+std::string MeasuredText(const MeasuredMotion& measured) {
   std::vector<Column> columns = {{""}, {"motion", Align::kRight}};
   if (measured.source) columns.push_back({"source", Align::kRight});
   Table table(columns);
@@ -119,7 +80,7 @@ std::string MeasuredText(const Measured& measured) {
   return absl::StrCat(table.ToString(), "\n", facts.ToString());
 }
 
-Json MeasuredJson(const Measured& measured) {
+Json MeasuredJson(const MeasuredMotion& measured) {
   Json json = QualityJson(measured.quality);
   if (measured.source) json["source"] = QualityJson(*measured.source);
   if (measured.comparison) {

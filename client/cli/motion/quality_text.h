@@ -3,28 +3,15 @@
 #ifndef CLIENT_CLI_MOTION_QUALITY_TEXT_H_
 #define CLIENT_CLI_MOTION_QUALITY_TEXT_H_
 
-#include <optional>
 #include <string>
 
-#include "client/cli/motion/body_file.h"
 #include "client/cli/text/format.h"
+#include "gelenk/retarget/moving_body.h"
 
 namespace gelenk::cli {
 
-struct Measured {
-  MotionQuality quality;
-  // Beside the motion that it was made from.
-  std::optional<MotionQuality> source;
-  std::optional<MotionComparison> comparison;
-};
-
-// INVALID_ARGUMENT for files without motion, or whose frames are not as many.
-// With a reference, its contacts count and the ground is flat, at height 0.
-absl::StatusOr<Measured> Measure(const BodyFile& body,
-                                 const BodyFile* reference);
-
-std::string MeasuredText(const Measured& measured);
-Json MeasuredJson(const Measured& measured);
+std::string MeasuredText(const MeasuredMotion& measured);
+Json MeasuredJson(const MeasuredMotion& measured);
 
 }  // namespace gelenk::cli
 

@@ -15,12 +15,6 @@ namespace {
 // of the file at most.
 constexpr double kFrameTimeSlack = 1e-3;
 
-ContactLabels LabelsOf(const MovingBody& body,
-                       const std::vector<BodyPose>& poses) {
-  return LabelContacts(FootPointsOf(poses), body.frame_time_s,
-                       FeetOf(*body.model));
-}
-
 absl::StatusOr<Eigen::MatrixXd> RetargetFrames(
     const MovingBody& source, std::shared_ptr<const BodyModel> target,
     const RetargetOptions& options) {
@@ -82,6 +76,12 @@ std::vector<BodyPose> BodyPosesOf(const BodyModel& model,
   return poses;
 }
 
+ContactLabels ContactsOf(const MovingBody& body,
+                         absl::Span<const BodyPose> poses) {
+  return LabelContacts(FootPointsOf(poses), body.frame_time_s,
+                       FeetOf(*body.model));
+}
+
 absl::StatusOr<MeasuredMotion> MeasureBody(const MovingBody& body,
                                            const MovingBody* reference) {
   if (!body.has_motion()) {
@@ -91,7 +91,7 @@ absl::StatusOr<MeasuredMotion> MeasureBody(const MovingBody& body,
   const BodyMotionView motion = {*body.model, poses, body.frame_time_s};
   MeasuredMotion measured;
   if (reference == nullptr) {
-    measured.quality = MeasureMotion(motion, LabelsOf(body, poses));
+    measured.quality = MeasureMotion(motion, ContactsOf(body, poses));
     return measured;
   }
   if (reference->positions.cols() != body.positions.cols() ||
@@ -106,7 +106,7 @@ absl::StatusOr<MeasuredMotion> MeasureBody(const MovingBody& body,
       BodyPosesOf(*reference->model, reference->positions);
   const BodyMotionView source = {*reference->model, source_poses,
                                  reference->frame_time_s};
-  const ContactLabels labels = LabelsOf(*reference, source_poses);
+  const ContactLabels labels = ContactsOf(*reference, source_poses);
   const FlatGround ground;
   measured.source = MeasureMotion(source, labels);
   measured.quality = MeasureMotion(motion, labels, &ground);

@@ -44,6 +44,10 @@ absl::StatusOr<MovingBody> MakeMovingBody(
 std::vector<BodyPose> BodyPosesOf(const BodyModel& model,
                                   const Eigen::MatrixXd& positions);
 
+// Where its feet stand; the poses are its own.
+ContactLabels ContactsOf(const MovingBody& body,
+                         absl::Span<const BodyPose> poses);
+
 struct MeasuredMotion {
   MotionQuality quality;
   // Beside the motion that it was made from.
