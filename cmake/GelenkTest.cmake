@@ -8,8 +8,15 @@
 # Labels in use: unit, integration, architecture, concurrent (also run under
 # ThreadSanitizer), soak (only with `./dev soak`), corpus (on files that are not
 # part of the project; skipped where they are not found). The target LABEL_tests
-# builds the tests of one label and what they need.
+# builds the tests of one label and what they need. GELENK_TEST_PRECOMPILED is the
+# target whose precompiled headers the tests of a folder reuse.
 find_package(GTest CONFIG REQUIRED)
+
+# What tests exercise is in the libraries, and optimised; themselves they are to
+# compile fast.
+function(gelenk_compile_fast target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
 
 function(gelenk_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT"
@@ -29,6 +36,8 @@ function(gelenk_test name)
                                         GTest::gmock)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE ${arg_DEFINES})
+  gelenk_compile_fast(${name})
+  gelenk_reuse_precompiled(${name} ${GELENK_TEST_PRECOMPILED})
   gelenk_warnings(${name})
   add_test(NAME ${name} COMMAND ${name})
   gelenk_label_test(${name} ${name} "${arg_LABELS}" ${arg_TIMEOUT})

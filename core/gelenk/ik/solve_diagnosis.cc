@@ -1,6 +1,5 @@
 #include "gelenk/ik/solve_diagnosis.h"
 
-#include <Eigen/SVD>
 #include <cmath>
 #include <vector>
 
@@ -18,12 +17,11 @@ double Manipulability(const std::vector<Eigen::RowVectorXd>& rows) {
   if (rows.empty() || static_cast<int>(rows.size()) > rows[0].size()) return 0;
   Eigen::MatrixXd j(rows.size(), rows[0].size());
   for (size_t i = 0; i < rows.size(); ++i) j.row(i) = rows[i];
-  return j.bdcSvd().singularValues().prod();
+  return ComputeSingularValues(j).prod();
 }
 
 int Rank(const Eigen::MatrixXd& j) {
-  if (j.size() == 0) return 0;
-  const Eigen::VectorXd values = j.bdcSvd().singularValues();
+  const Eigen::VectorXd values = ComputeSingularValues(j);
   int rank = 0;
   for (double value : values) {
     if (value > kRankCutoff * values[0]) ++rank;

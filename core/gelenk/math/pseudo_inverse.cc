@@ -3,13 +3,18 @@
 #include <Eigen/SVD>
 
 namespace gelenk {
+namespace {
+
+// The one instance of it: half a minute of a compiler's time for every other.
+using Svd = Eigen::JacobiSVD<Eigen::MatrixXd>;
+
+}  // namespace
 
 PseudoInverse ComputePseudoInverse(const Eigen::MatrixXd& j) {
   PseudoInverse result;
   result.matrix.setZero(j.cols(), j.rows());
   if (j.size() == 0) return result;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(
-      j, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Svd svd(j, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& values = svd.singularValues();
   while (result.rank < values.size() && values[result.rank] > 0 &&
          values[result.rank] > kRankCutoff * values[0]) {
@@ -19,6 +24,11 @@ PseudoInverse ComputePseudoInverse(const Eigen::MatrixXd& j) {
                   values.head(result.rank).cwiseInverse().asDiagonal() *
                   svd.matrixU().leftCols(result.rank).transpose();
   return result;
+}
+
+Eigen::VectorXd ComputeSingularValues(const Eigen::MatrixXd& j) {
+  if (j.size() == 0) return Eigen::VectorXd();
+  return Svd(j).singularValues();
 }
 
 }  // namespace gelenk

@@ -21,6 +21,10 @@ struct PseudoInverse {
 // columns. Allocates; cost: cubic in the smaller side.
 PseudoInverse ComputePseudoInverse(const Eigen::MatrixXd& j);
 
+// Falling; none for a matrix without rows or columns. Allocates; cost: cubic in
+// the smaller side.
+Eigen::VectorXd ComputeSingularValues(const Eigen::MatrixXd& j);
+
 }  // namespace gelenk
 
 #endif  // GELENK_MATH_PSEUDO_INVERSE_H_
