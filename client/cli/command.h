@@ -38,6 +38,7 @@ Command AddFkCommand(CLI::App& app);
 Command AddIkCommand(CLI::App& app);
 Command AddMapCommand(CLI::App& app);
 Command AddPlayCommand(CLI::App& app);
+Command AddReplayCommand(CLI::App& app);
 Command AddRetargetCommand(CLI::App& app);
 Command AddSessionsCommand(CLI::App& app);
 Command AddSkinCommand(CLI::App& app);

@@ -68,12 +68,12 @@ int main(int argc, char** argv) {
   app.fallthrough();
   app.require_subcommand(1);
   const std::vector<Command> commands = {
-      AddInfoCommand(app),     AddFkCommand(app),        AddIkCommand(app),
-      AddPlayCommand(app),     AddSessionsCommand(app),  AddBenchCommand(app),
-      AddExamplesCommand(app), AddDhCommand(app),        AddTwoLinkCommand(app),
-      AddTwoBoneCommand(app),  AddWorkspaceCommand(app), AddClipCommand(app),
-      AddRetargetCommand(app), AddMapCommand(app),       AddSkinCommand(app),
-      AddBridgeCommand(app)};
+      AddInfoCommand(app),    AddFkCommand(app),       AddIkCommand(app),
+      AddPlayCommand(app),    AddReplayCommand(app),   AddSessionsCommand(app),
+      AddBenchCommand(app),   AddExamplesCommand(app), AddDhCommand(app),
+      AddTwoLinkCommand(app), AddTwoBoneCommand(app),  AddWorkspaceCommand(app),
+      AddClipCommand(app),    AddRetargetCommand(app), AddMapCommand(app),
+      AddSkinCommand(app),    AddBridgeCommand(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -78,6 +78,9 @@ absl::Status WriteFiles(const PlayOptions& options, const BvhClip& clip,
     if (!status.ok()) return status;
     report->written.push_back(options.picture_path);
   }
+  if (!options.player.record_path.empty()) {
+    report->written.push_back(options.player.record_path);
+  }
   return absl::OkStatus();
 }
 
@@ -147,6 +150,9 @@ Command AddPlayCommand(CLI::App& app) {
   play->add_option("--picture", options->picture_path,
                    "Draw targets and answers over time")
       ->option_text("OUT.svg|OUT.html");
+  play->add_option("--record", options->player.record_path,
+                   "Write frames and answers as a log for gelenk replay")
+      ->option_text("LOG");
   play->add_option("--limits", options->limits,
                    "Joint limits: the clip's range ± 5° (default), none, or "
                    "those of a skeleton file")

@@ -26,6 +26,7 @@ struct RetargetCommandOptions {
   std::string out_path;
   std::string map_path;
   std::string picture_path;
+  std::string record_path;
   bool live = false;
   Format format = Format::kTable;
 };
@@ -39,11 +40,12 @@ struct MapOptions {
 // Through a session, as a live source is retargeted.
 absl::StatusOr<Eigen::MatrixXd> RetargetLive(const std::string& server,
                                              const BodyFile& source,
-                                             const BodyFile& target) {
+                                             const BodyFile& target,
+                                             const std::string& record_path) {
   const absl::StatusOr<std::unique_ptr<Service>> service =
       Service::Open(server);
   if (!service.ok()) return service.status();
-  return FollowClip((*service)->connection(), source, target);
+  return FollowClip((*service)->connection(), source, target, record_path);
 }
 
 absl::Status RunRetarget(const RetargetCommandOptions& options,
@@ -66,7 +68,7 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
   if (!target.ok()) return target.status();
   const absl::StatusOr<Eigen::MatrixXd> positions =
       options.live
-          ? RetargetLive(server, *source, *target)
+          ? RetargetLive(server, *source, *target, options.record_path)
           : RetargetBody(*source, target->model, LookAhead::kWholeClip, {});
   if (!positions.ok()) return positions.status();
   const absl::StatusOr<MotionClip> clip = ClipFromFrames(
@@ -92,6 +94,7 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
     }
     written.push_back(options.picture_path);
   }
+  if (!options.record_path.empty()) written.push_back(options.record_path);
   if (options.format == Format::kJson) {
     Json json = MeasuredJson(*measured);
     json["frames"] = positions->cols();
@@ -187,9 +190,15 @@ Command AddRetargetCommand(CLI::App& app) {
                    "--format json` prints it; a role with an empty joint is "
                    "nobody's")
       ->option_text("MAP.json");
-  retarget->add_flag("--live", options->live,
-                     "Frame by frame without look-ahead, through a session as "
-                     "a live source (of --server, or one of its own)");
+  CLI::Option* live = retarget->add_flag(
+      "--live", options->live,
+      "Frame by frame without look-ahead, through a session as a live source "
+      "(of --server, or one of its own)");
+  retarget
+      ->add_option("--record", options->record_path,
+                   "Write frames and answers as a log for gelenk replay")
+      ->needs(live)
+      ->option_text("LOG");
   retarget
       ->add_option("--unit", options->unit_m,
                    "Metres per unit of FILE; default: guessed")

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/made_session.h"
+#include "client/cli/replay/session_recorder.h"
 #include "client/cli/unique_id.h"
 #include "convert/geometry.h"
 #include "convert/joint_map.h"
@@ -68,9 +69,11 @@ absl::StatusOr<Eigen::VectorXd> PoseOf(const v1::PoseFrame& answer,
   return convert::FromProto(skeleton, answer.pose());
 }
 
+// `recorder` may be null.
 absl::StatusOr<Eigen::MatrixXd> Stream(client::SessionStream& stream,
                                        const BodyFile& source,
-                                       const Skeleton& target) {
+                                       const Skeleton& target,
+                                       SessionRecorder* recorder) {
   const int count = static_cast<int>(source.positions.cols());
   Eigen::MatrixXd poses(target.position_count(), count);
   int sent = 0;
@@ -78,8 +81,10 @@ absl::StatusOr<Eigen::MatrixXd> Stream(client::SessionStream& stream,
     for (; sent < std::min(answered + kBatch, count); ++sent) {
       v1::TargetFrame frame;
       convert::ToProto(source.positions.col(sent), frame.mutable_source_pose());
-      const auto number = stream.SendNext(std::move(frame), kTimeout);
-      if (!number.ok()) return number.status();
+      frame.set_sequence_number(sent + 1);
+      if (recorder != nullptr) recorder->NoteSent(frame);
+      absl::Status status = stream.Send(std::move(frame), kTimeout);
+      if (!status.ok()) return status;
     }
     const auto answer = stream.Receive(kTimeout);
     if (!answer.ok()) return answer.status();
@@ -88,6 +93,10 @@ absl::StatusOr<Eigen::MatrixXd> Stream(client::SessionStream& stream,
     }
     const absl::StatusOr<Eigen::VectorXd> pose = PoseOf(**answer, target);
     if (!pose.ok()) return pose.status();
+    if (recorder != nullptr) {
+      absl::Status status = recorder->NoteAnswer(**answer);
+      if (!status.ok()) return status;
+    }
     poses.col(answered++) = *pose;
   }
   const absl::Status closed = stream.Close(kTimeout);
@@ -142,18 +151,30 @@ client::SessionSpec TrackedSpec(const TrackedBody& source,
 
 absl::StatusOr<Eigen::MatrixXd> FollowClip(
     const std::shared_ptr<client::Connection>& connection,
-    const BodyFile& source, const BodyFile& target) {
+    const BodyFile& source, const BodyFile& target,
+    const std::string& record_path) {
   const client::SessionSpec spec =
       FollowerSpec(FollowedBodyOf(source), FollowedBodyOf(target));
+  std::unique_ptr<SessionRecorder> recorder;
+  if (!record_path.empty()) {
+    auto started = SessionRecorder::Start(*connection, spec, record_path);
+    if (!started.ok()) return started.status();
+    recorder = *std::move(started);
+  }
   client::SessionStreamOptions options;
   options.window = kBatch;
   options.max_frames_per_message = kBatch;
   auto stream = client::SessionStream::Open(connection, options, {spec});
   absl::StatusOr<Eigen::MatrixXd> poses =
-      stream.ok() ? Stream(**stream, source, *target.model->skeleton)
-                  : stream.status();
+      stream.ok()
+          ? Stream(**stream, source, *target.model->skeleton, recorder.get())
+          : stream.status();
   if (stream.ok()) stream->reset();
   DeleteMade(*connection, spec);
+  if (recorder != nullptr) {
+    absl::Status finished = recorder->Finish();
+    if (poses.ok() && !finished.ok()) return finished;
+  }
   return poses;
 }
 

@@ -49,11 +49,13 @@ client::SessionSpec TrackedSpec(const TrackedBody& source,
                                 const FollowedBody& target);
 
 // Streams the motion of `source` through a session, frame by frame without
-// look-ahead, and gives the target's poses, a column a frame. Errors: those of
-// the service, or of a frame, with its number.
+// look-ahead, and gives the target's poses, a column a frame. The log of the
+// session goes to `record_path` unless that is empty. Errors: those of the
+// service, or of a frame, with its number.
 absl::StatusOr<Eigen::MatrixXd> FollowClip(
     const std::shared_ptr<client::Connection>& connection,
-    const BodyFile& source, const BodyFile& target);
+    const BodyFile& source, const BodyFile& target,
+    const std::string& record_path = "");
 
 }  // namespace gelenk::cli
 

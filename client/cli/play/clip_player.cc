@@ -10,6 +10,7 @@
 #include "absl/time/clock.h"
 #include "client/cli/made_session.h"
 #include "client/cli/play/target_frame.h"
+#include "client/cli/replay/session_recorder.h"
 #include "client/cli/unique_id.h"
 #include "client/cli/uploaded_skeleton.h"
 #include "convert/skeleton.h"
@@ -39,10 +40,12 @@ client::SessionSpec SpecFor(const PlayerOptions& options,
 // Sends the frames of a clip from a thread of its own.
 class Sender {
  public:
+  // `recorder` may be null.
   Sender(const Playback& playback, std::optional<double> fps,
-         client::SessionStream& stream)
+         SessionRecorder* recorder, client::SessionStream& stream)
       : playback_(playback),
         frame_interval_(fps ? absl::Seconds(1 / *fps) : absl::ZeroDuration()),
+        recorder_(recorder),
         stream_(stream),
         thread_([this] { status_ = Run(); }) {}
 
@@ -63,7 +66,9 @@ class Sender {
     const absl::Time start = absl::Now();
     for (int frame = 0; frame < playback_.frame_count() && !stopped_; ++frame) {
       absl::SleepFor(start + frame * frame_interval_ - absl::Now());
-      absl::Status status = stream_.Send(writer.Write(frame));
+      v1::TargetFrame message = writer.Write(frame);
+      if (recorder_ != nullptr) recorder_->NoteSent(message);
+      absl::Status status = stream_.Send(std::move(message));
       if (status.ok()) continue;
       failed_ = true;
       return status;
@@ -73,6 +78,7 @@ class Sender {
 
   const Playback& playback_;
   const absl::Duration frame_interval_;
+  SessionRecorder* const recorder_;
   client::SessionStream& stream_;
   std::atomic<bool> stopped_ = false;
   std::atomic<bool> failed_ = false;
@@ -84,6 +90,7 @@ class Sender {
 // Takes answers until the one of the last frame.
 absl::Status ReceiveAll(const Sender& sender,
                         const std::function<void(int)>& report_progress,
+                        SessionRecorder* recorder,
                         client::SessionStream& stream, Playback* playback) {
   for (int64_t last = 0; last < playback->frame_count() && !sender.failed();) {
     const auto answer = stream.Receive(kReceiveTimeout);
@@ -91,6 +98,9 @@ absl::Status ReceiveAll(const Sender& sender,
     if (!answer->has_value()) continue;
     last = (*answer)->sequence_number();
     absl::Status status = TakeAnswer(**answer, playback);
+    if (status.ok() && recorder != nullptr) {
+      status = recorder->NoteAnswer(**answer);
+    }
     if (!status.ok()) return status;
     report_progress(static_cast<int>(last));
   }
@@ -112,10 +122,12 @@ void HoldPoses(Playback* playback) {
 
 absl::Status Stream(const PlayerOptions& options,
                     const std::function<void(int)>& report_progress,
-                    client::SessionStream& stream, Playback* playback) {
+                    SessionRecorder* recorder, client::SessionStream& stream,
+                    Playback* playback) {
   const absl::Time start = absl::Now();
-  Sender sender(*playback, options.fps, stream);
-  absl::Status status = ReceiveAll(sender, report_progress, stream, playback);
+  Sender sender(*playback, options.fps, recorder, stream);
+  absl::Status status =
+      ReceiveAll(sender, report_progress, recorder, stream, playback);
   playback->elapsed = absl::Now() - start;
   if (!status.ok()) {
     // Releases a sender that is held by a full window.
@@ -138,11 +150,19 @@ absl::Status PlayClip(const std::shared_ptr<client::Connection>& connection,
   stream_options.window = options.batch;
   stream_options.max_frames_per_message = options.batch;
   const client::SessionSpec spec = SpecFor(options, *playback);
+  std::unique_ptr<SessionRecorder> recorder;
+  if (!options.record_path.empty()) {
+    auto started =
+        SessionRecorder::Start(*connection, spec, options.record_path);
+    if (!started.ok()) return started.status();
+    recorder = *std::move(started);
+  }
 
   auto stream = client::SessionStream::Open(connection, stream_options, {spec});
   absl::Status status = stream.status();
   if (status.ok()) {
-    status = Stream(options, report_progress, **stream, playback);
+    status =
+        Stream(options, report_progress, recorder.get(), **stream, playback);
     const client::StreamStatistics statistics = (*stream)->statistics();
     playback->reconnects = statistics.reconnects;
     playback->round_trip = {statistics.round_trips.Quantile(0.5),
@@ -151,6 +171,8 @@ absl::Status PlayClip(const std::shared_ptr<client::Connection>& connection,
     stream->reset();
   }
   DeleteMade(*connection, spec);
+  // What was played until then can be replayed also where it broke off.
+  if (recorder != nullptr) status.Update(recorder->Finish());
   if (status.ok()) HoldPoses(playback);
   return status;
 }

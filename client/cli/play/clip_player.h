@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "client/cli/play/playback.h"
@@ -21,6 +22,8 @@ struct PlayerOptions {
   int batch = 32;
   // Frames a second; unset means as fast as answers come.
   std::optional<double> fps;
+  // Where the log of the session goes; empty for none.
+  std::string record_path;
 };
 
 // Creates skeleton and session, plays `playback.clip_poses`, fills in the

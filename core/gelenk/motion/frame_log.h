@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,13 @@
 #include "gelenk/skeleton/pose.h"
 
 namespace gelenk {
+
+// Whether both are the same numbers in the same bits: 0 is not -0 here.
+inline bool HasSameBits(const ConstVectorView& a, const ConstVectorView& b) {
+  return a.size() == b.size() &&
+         (a.size() == 0 ||
+          std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
 
 template <class Input>
 struct LoggedFrame {
@@ -53,24 +61,26 @@ class FrameLog {
 
   // Calls `step(frame) -> Eigen::VectorXd` for each and returns the index of
   // the first whose pose is another by more than `tolerance` in any number, -1
-  // where all are the same.
+  // where all are the same. 0 means bit by bit.
   template <class Step>
   int Replay(Step step, double tolerance = 0) const {
     for (size_t i = 0; i < frames_.size(); ++i) {
       const Eigen::VectorXd positions = step(frames_[i]);
       const Eigen::VectorXd& logged = frames_[i].positions;
-      // NaN fails the comparison.
-      if (positions.size() == logged.size() &&
-          (positions.size() == 0 ||
-           (positions - logged).cwiseAbs().maxCoeff() <= tolerance)) {
-        continue;
-      }
-      return static_cast<int>(i);
+      if (!IsNear(positions, logged, tolerance)) return static_cast<int>(i);
     }
     return -1;
   }
 
  private:
+  static bool IsNear(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                     double tolerance) {
+    if (tolerance == 0) return HasSameBits(a, b);
+    // NaN fails the comparison.
+    return a.size() == b.size() &&
+           (a.size() == 0 || (a - b).cwiseAbs().maxCoeff() <= tolerance);
+  }
+
   size_t max_frames_;
   std::vector<LoggedFrame<Input>> frames_;
 };

@@ -120,6 +120,19 @@ TEST(FrameLogTest, ReplaysBitByBitAndFindsTheFirstThatDiffers) {
       -1);
 }
 
+TEST(FrameLogTest, ASignOfZeroIsADifference) {
+  FrameLog<int> log(1);
+  ASSERT_TRUE(log.Append({.sequence_number = 1,
+                          .input = 0,
+                          .positions = Eigen::VectorXd::Constant(1, 0.0)})
+                  .ok());
+  const auto negative = [](const LoggedFrame<int>&) -> Eigen::VectorXd {
+    return Eigen::VectorXd::Constant(1, -0.0);
+  };
+  EXPECT_EQ(log.Replay(negative), 0);
+  EXPECT_EQ(log.Replay(negative, 1e-12), -1);
+}
+
 TEST(FrameLogTest, IsBoundedAndInOrder) {
   FrameLog<std::string> log(2);
   ASSERT_TRUE(
