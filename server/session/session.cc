@@ -4,64 +4,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "gelenk/base/violations.h"
-#include "gelenk/math/rotation.h"
 #include "gelenk/skeleton/joint_check.h"
-#include "gelenk/skeleton/pose.h"
 #include "server/clock.h"
+#include "server/session/frame_check.h"
 
 namespace gelenk::server {
-namespace {
-
-absl::Status CheckSequence(std::optional<int64_t> number, int64_t newest) {
-  if (!number || *number > newest) return absl::OkStatus();
-  Violations violations;
-  violations.Add("sequence_number",
-                 absl::StrCat("want more than ", newest, ", got ", *number));
-  return violations.ToStatus();
-}
-
-// Checks every update of `frame` against `problem`, normalising as it goes.
-absl::Status CheckUpdates(const IkProblem& problem, InputFrame& frame) {
-  Violations violations;
-  for (size_t i = 0; i < frame.updates.size(); ++i) {
-    GoalUpdate& update = frame.updates[i];
-    absl::Status status = absl::OkStatus();
-    if (update.target) {
-      status = problem.CheckTarget(update.goal_index, *update.target);
-    } else {
-      GoalTarget none;
-      if (update.goal_index < 0 ||
-          update.goal_index >= static_cast<int>(problem.goals().size())) {
-        status = problem.CheckTarget(update.goal_index, none);
-      }
-    }
-    if (status.ok() && update.weight) {
-      status = IkProblem::CheckWeight(*update.weight);
-    }
-    if (!status.ok()) {
-      violations.AddStatus(absl::StrCat("targets[", i, "]"), status);
-    }
-  }
-  if (frame.world_from_skeleton) {
-    CheckAndNormalize("world_from_skeleton", *frame.world_from_skeleton,
-                      violations);
-  }
-  return violations.ToStatus();
-}
-
-void CheckMotion(const Skeleton& skeleton, const JointMotion& motion,
-                 Violations& violations) {
-  if (!motion.capture_time) return;
-  if (motion.velocity.size() == skeleton.velocity_count() &&
-      motion.velocity.allFinite()) {
-    return;
-  }
-  violations.Add("velocity",
-                 absl::StrCat("want ", skeleton.velocity_count(),
-                              " finite numbers, got ", motion.velocity.size()));
-}
-
-}  // namespace
 
 Session::Session(std::string name, std::string skeleton_name,
                  std::string affinity_key, std::shared_ptr<SharedTrees> trees,
@@ -84,42 +31,28 @@ Session::Session(std::string name, std::string skeleton_name,
 
 absl::Status Session::Claim(DriverId driver, bool take_over, absl::Time now) {
   std::lock_guard<std::mutex> lock(mutex_);
-  if (!ended_.ok()) return ended_;
-  if (driver_ && *driver_ != driver && !take_over) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        "session: ", name_, " has a driver; attach with take_over to take it"));
+  if (absl::Status status = seat_.Claim(driver, take_over, name_);
+      !status.ok()) {
+    return status;
   }
   input_.ForgetTime();
-  driver_ = driver;
   last_driven_ = now;
   return absl::OkStatus();
 }
 
 void Session::Release(DriverId driver) {
   std::lock_guard<std::mutex> lock(mutex_);
-  if (driver_ == driver) driver_.reset();
+  seat_.Release(driver);
 }
 
 absl::Status Session::CheckDriver(DriverId driver) const {
   std::lock_guard<std::mutex> lock(mutex_);
-  return CheckDriverLocked(driver);
-}
-
-absl::Status Session::CheckDriverLocked(DriverId driver) const {
-  if (!ended_.ok()) return ended_;
-  if (driver == kUnaryDriver) {
-    if (!driver_) return absl::OkStatus();
-    return absl::FailedPreconditionError(
-        absl::StrCat("name: ", name_, " is driven by a stream"));
-  }
-  if (driver_ == driver) return absl::OkStatus();
-  return absl::AbortedError(
-      absl::StrCat("session: ", name_, " was taken over by another driver"));
+  return seat_.Check(driver, name_);
 }
 
 absl::Status Session::Resume(DriverId driver, const ResumeState& state) {
   std::lock_guard<std::mutex> lock(mutex_);
-  if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
+  if (absl::Status status = seat_.Check(driver, name_); !status.ok()) {
     return status;
   }
   RigidTransform place = state.world_from_skeleton != nullptr
@@ -155,7 +88,7 @@ absl::Status Session::Resume(DriverId driver, const ResumeState& state) {
   }
   problem_.SetWorldFromSkeleton(place);
   positions_ = state.positions;
-  sequence_number_ = state.sequence_number;
+  seat_.SetNumber(state.sequence_number);
   motion_ = state.motion != nullptr ? *state.motion : JointMotion();
   cold_ = false;
   ++version_;
@@ -165,14 +98,12 @@ absl::Status Session::Resume(DriverId driver, const ResumeState& state) {
 absl::Status Session::TakeNumberLocked(DriverId driver,
                                        std::optional<int64_t> sequence_number,
                                        absl::Time now) {
-  if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
+  if (absl::Status status = seat_.Check(driver, name_); !status.ok()) {
     return status;
   }
-  if (absl::Status status = CheckSequence(sequence_number, sequence_number_);
-      !status.ok()) {
+  if (absl::Status status = seat_.TakeNumber(sequence_number); !status.ok()) {
     return status;
   }
-  if (sequence_number) sequence_number_ = *sequence_number;
   last_driven_ = now;
   return absl::OkStatus();
 }
@@ -203,7 +134,7 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
     patched->SetWorldFromSkeleton(problem_.world_from_skeleton());
     patched->KeepPlants(problem_);
   }
-  if (absl::Status status = CheckUpdates(patched ? *patched : problem_, frame);
+  if (absl::Status status = CheckFrame(patched ? *patched : problem_, frame);
       !status.ok()) {
     return status;
   }
@@ -260,7 +191,7 @@ bool Session::IsHeavy() const {
 absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
                             SolvedFrame& frame) {
   std::lock_guard<std::mutex> lock(mutex_);
-  if (absl::Status status = CheckDriverLocked(driver); !status.ok()) {
+  if (absl::Status status = seat_.Check(driver, name_); !status.ok()) {
     return status;
   }
   if (!input_.empty()) {
@@ -290,7 +221,9 @@ absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
   frame.detail = options.detail;
   frame.needs_continuation =
       drifted_ || partly_named_ || options_.limit_speed || !input_.empty();
-  if (options_.limit_speed) NoteMotionLocked(frame);
+  if (options_.limit_speed) {
+    NoteMotion(skeleton(), capture_time_, frame.start, positions_, motion_);
+  }
   RecordLocked(frame);
   return absl::OkStatus();
 }
@@ -316,19 +249,10 @@ void Session::FollowSourceLocked(SolvedFrame& frame) {
 const StepBounds* Session::SpeedBoundsLocked(SolvedFrame& frame) const {
   if (!options_.limit_speed) return nullptr;
   frame.start = positions_;
-  if (!capture_time_ || !motion_.capture_time || cold_) return nullptr;
-  SpeedLimits(skeleton(), *capture_time_ - *motion_.capture_time,
-              motion_.velocity, frame.bounds);
-  return &frame.bounds;
-}
-
-void Session::NoteMotionLocked(SolvedFrame& frame) {
-  const std::optional<absl::Duration> before = motion_.capture_time;
-  motion_.velocity.setZero(skeleton().velocity_count());
-  motion_.capture_time = capture_time_;
-  if (!before || !capture_time_ || *capture_time_ <= *before) return;
-  Difference(skeleton(), frame.start, positions_, motion_.velocity);
-  motion_.velocity /= absl::ToDoubleSeconds(*capture_time_ - *before);
+  if (cold_) return nullptr;
+  const bool bounded =
+      BoundSpeed(skeleton(), motion_, capture_time_, frame.bounds);
+  return bounded ? &frame.bounds : nullptr;
 }
 
 void Session::CopyPositions(Eigen::VectorXd& positions) const {
@@ -338,7 +262,7 @@ void Session::CopyPositions(Eigen::VectorXd& positions) const {
 
 int64_t Session::sequence_number() const {
   std::lock_guard<std::mutex> lock(mutex_);
-  return sequence_number_;
+  return seat_.sequence_number();
 }
 
 SessionSnapshot Session::Snapshot() const {
@@ -364,7 +288,7 @@ absl::Status Session::Update(
   // Held all along, so that no solve in between is lost; nobody waits, for
   // nobody drives.
   std::lock_guard<std::mutex> lock(mutex_);
-  if (absl::Status status = CheckDriverLocked(kUnaryDriver); !status.ok()) {
+  if (absl::Status status = seat_.Check(kUnaryDriver, name_); !status.ok()) {
     return status;
   }
   if (revision && *revision != revision_) {
@@ -405,15 +329,15 @@ bool Session::CopyIfNewer(uint64_t& version, Eigen::VectorXd& positions,
   version = version_;
   positions = positions_;
   world_from_skeleton = problem_.world_from_skeleton();
-  sequence_number =
-      sequence_number_ > 0 ? sequence_number_ : static_cast<int64_t>(version_);
+  const int64_t newest = seat_.sequence_number();
+  sequence_number = newest > 0 ? newest : static_cast<int64_t>(version_);
   return true;
 }
 
 absl::Status Session::StartRecording(
     std::shared_ptr<SessionRecording> recording) {
   std::lock_guard<std::mutex> lock(mutex_);
-  if (!ended_.ok()) return ended_;
+  if (!seat_.ended().ok()) return seat_.ended();
   if (recording_) {
     return absl::FailedPreconditionError(
         absl::StrCat("session: ", name_, " is recorded already"));
@@ -433,12 +357,12 @@ absl::StatusOr<std::shared_ptr<SessionRecording>> Session::StopRecording() {
 
 void Session::End(absl::Status why) {
   std::lock_guard<std::mutex> lock(mutex_);
-  if (ended_.ok()) ended_ = std::move(why);
+  seat_.End(std::move(why));
 }
 
 absl::Status Session::ended() const {
   std::lock_guard<std::mutex> lock(mutex_);
-  return ended_;
+  return seat_.ended();
 }
 
 bool Session::IsExpired(absl::Time now) const {

@@ -21,16 +21,14 @@
 #include "gelenk/ik/ik_problem.h"
 #include "gelenk/ik/ik_solver.h"
 #include "gelenk/skeleton/skeleton.h"
+#include "server/session/driver_seat.h"
 #include "server/session/input_frame.h"
+#include "server/session/joint_motion.h"
 #include "server/session/session_input.h"
 #include "server/session/session_recording.h"
 #include "server/session/shared_trees.h"
 
 namespace gelenk::server {
-
-// Who drives a session: a stream's slot. 0 is a unary call.
-using DriverId = uint64_t;
-inline constexpr DriverId kUnaryDriver = 0;
 
 // What a session is made of, and what UpdateSession replaces parts of.
 struct SessionState {
@@ -41,15 +39,6 @@ struct SessionState {
   bool cold = true;
   RigidTransform world_from_skeleton;
   absl::Duration idle_ttl = absl::Minutes(10);
-};
-
-// How the joints of a session moved last: what the speed limits of the next
-// frame start from. Kept only where SolverOptions::limit_speed asks for it.
-struct JointMotion {
-  // Of the last frame that was solved, on the client's clock.
-  std::optional<absl::Duration> capture_time;
-  // Size velocity_count, or none.
-  Eigen::VectorXd velocity;
 };
 
 // A copy of a session for those who read it.
@@ -182,8 +171,6 @@ class Session {
   size_t ByteSize() const;
 
  private:
-  absl::Status CheckDriverLocked(DriverId driver) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // OK when `driver` may bring a frame of that number now, which is then used
   // up.
   absl::Status TakeNumberLocked(DriverId driver,
@@ -198,9 +185,6 @@ class Session {
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // What the speed limits leave for the next solve; null where there are none.
   const StepBounds* SpeedBoundsLocked(SolvedFrame& frame) const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Takes note of how the joints moved from `frame.start`.
-  void NoteMotionLocked(SolvedFrame& frame)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   SessionState StateLocked() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
@@ -219,9 +203,7 @@ class Session {
   bool cold_ ABSL_GUARDED_BY(mutex_);
   absl::Duration idle_ttl_ ABSL_GUARDED_BY(mutex_);
   absl::Time last_driven_ ABSL_GUARDED_BY(mutex_);
-  absl::Status ended_ ABSL_GUARDED_BY(mutex_);
-  std::optional<DriverId> driver_ ABSL_GUARDED_BY(mutex_);
-  int64_t sequence_number_ ABSL_GUARDED_BY(mutex_) = 0;
+  DriverSeat seat_ ABSL_GUARDED_BY(mutex_);
   uint64_t version_ ABSL_GUARDED_BY(mutex_) = 0;
   int64_t revision_ ABSL_GUARDED_BY(mutex_) = 1;
   // Of the newest frame; and what the last solved one left.
