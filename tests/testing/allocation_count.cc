@@ -47,6 +47,10 @@ void* __wrap_aligned_alloc(size_t alignment, size_t size) {
   if (void* memory = std::aligned_alloc(step, whole_steps)) return memory;
   throw std::bad_alloc();
 }
+[[gnu::noinline]] void* operator new(size_t size,
+                                     const std::nothrow_t&) noexcept {
+  return std::malloc(size);
+}
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }

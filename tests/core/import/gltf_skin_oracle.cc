@@ -134,6 +134,8 @@ std::vector<Eigen::Vector3d> GltfSkinOracle::Positions(
         Matrix4d blended = Matrix4d::Zero();
         for (size_t set = 0; set < joints.size(); ++set) {
           for (int k = 0; k < 4; ++k) {
+            // The index of an influence without weight may be any.
+            if (weights[set](k, v) == 0) continue;
             blended += weights[set](k, v) *
                        scene_from_mesh[static_cast<int>(joints[set](k, v))];
           }

@@ -103,7 +103,8 @@ TEST(JointMapTest, AHelperInTheTrunkIsNoLimb) {
   const RigFamily& family = RigFamilies().back();
   ASSERT_EQ(family.family, "nameless");
   SkeletonBuilder builder;
-  for (Joint joint : BodyOf(family)->joints()) {
+  const auto body = BodyOf(family);
+  for (Joint joint : body->joints()) {
     if (joint.id == family.left[4] || joint.id == family.right[4]) {
       Joint helper = joint;
       helper.id = joint.id + "h";
