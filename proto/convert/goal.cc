@@ -10,15 +10,38 @@
 #include "convert/geometry.h"
 #include "convert/goal_kind.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/goal_list_check.h"
 
 namespace gelenk::convert {
 namespace {
 
-absl::Status NoKind(const v1::Goal& proto) {
+// What stands beside the kind.
+Goal GoalWithoutKind(const v1::Goal& proto) {
+  Goal goal;
+  goal.id = proto.goal_id();
+  if (proto.has_weight()) goal.weight = proto.weight();
+  goal.priority = proto.priority();
+  return goal;
+}
+
+// What is wrong with a list that holds goals without a kind, all of it: no
+// problem can be made of them that would tell the rest.
+absl::Status FaultsOf(
+    const google::protobuf::RepeatedPtrField<v1::Goal>& protos,
+    const Skeleton* skeleton) {
   Violations violations;
-  violations.Add("kind",
-                 absl::StrCat("goal \"", absl::CHexEscape(proto.goal_id()),
-                              "\" wishes nothing"));
+  GoalListCheck check(skeleton, violations);
+  check.AddCount(protos.size());
+  for (const v1::Goal& proto : protos) {
+    Goal goal = GoalWithoutKind(proto);
+    std::optional<GoalKind> kind = KindFromProto(proto);
+    if (!kind) {
+      check.AddWithoutKind(goal);
+      continue;
+    }
+    goal.kind = *std::move(kind);
+    check.Add(goal);
+  }
   return violations.ToStatus();
 }
 
@@ -31,27 +54,23 @@ std::vector<Goal>::iterator FindGoal(std::vector<Goal>& goals,
 }  // namespace
 
 absl::StatusOr<Goal> FromProto(const v1::Goal& proto) {
+  Goal goal = GoalWithoutKind(proto);
   std::optional<GoalKind> kind = KindFromProto(proto);
-  if (!kind) return NoKind(proto);
-  Goal goal;
-  goal.id = proto.goal_id();
-  if (proto.has_weight()) goal.weight = proto.weight();
-  goal.priority = proto.priority();
+  if (!kind) return CheckWithoutKind(goal);
   goal.kind = *std::move(kind);
   return goal;
 }
 
 absl::StatusOr<std::vector<Goal>> FromProto(
-    const google::protobuf::RepeatedPtrField<v1::Goal>& protos) {
-  Violations violations;
+    const google::protobuf::RepeatedPtrField<v1::Goal>& protos,
+    const Skeleton* skeleton) {
   std::vector<Goal> goals;
   goals.reserve(protos.size());
-  for (int i = 0; i < protos.size(); ++i) {
-    absl::StatusOr<Goal> goal = FromProto(protos[i]);
-    violations.AddStatus(absl::StrCat("goals[", i, "]"), goal.status());
-    if (goal.ok()) goals.push_back(*std::move(goal));
+  for (const v1::Goal& proto : protos) {
+    absl::StatusOr<Goal> goal = FromProto(proto);
+    if (!goal.ok()) return FaultsOf(protos, skeleton);
+    goals.push_back(*std::move(goal));
   }
-  if (!violations.empty()) return violations.ToStatus();
   return goals;
 }
 

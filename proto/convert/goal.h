@@ -12,14 +12,19 @@
 #include "absl/types/span.h"
 #include "gelenk/ik/goal.h"
 #include "gelenk/ik/ik_problem.h"
+#include "gelenk/skeleton/skeleton.h"
 #include "gelenk/v1/ik.pb.h"
 #include "gelenk/v1/session_service.pb.h"
 
 namespace gelenk::convert {
 
 absl::StatusOr<Goal> FromProto(const v1::Goal& proto);
+
+// `skeleton`, where it is known, is what the goals are for. Where a kind is
+// missing the violations are those of all goals, of what IkProblem checks too.
 absl::StatusOr<std::vector<Goal>> FromProto(
-    const google::protobuf::RepeatedPtrField<v1::Goal>& protos);
+    const google::protobuf::RepeatedPtrField<v1::Goal>& protos,
+    const Skeleton* skeleton);
 
 void ToProto(const Goal& goal, v1::Goal* proto);
 void ToProto(absl::Span<const Goal> goals,

@@ -132,7 +132,8 @@ absl::Status BatchSolve(const ServiceState& state,
                    absl::StrCat(SolverMethodName(options->method),
                                 " does not solve batches"));
   }
-  absl::StatusOr<std::vector<Goal>> goals = convert::FromProto(request.goals());
+  absl::StatusOr<std::vector<Goal>> goals =
+      convert::FromProto(request.goals(), stored->skeleton.get());
   violations.AddStatus("", goals.status());
   if (!violations.empty()) return violations.ToStatus();
   absl::StatusOr<IkProblem> problem =

@@ -52,7 +52,8 @@ absl::StatusOr<Continuation> ReadContinuation(const std::string& bytes,
     return Unreadable(
         absl::StrCat("want format ", kFormat, ", got ", proto.format()));
   }
-  absl::StatusOr<std::vector<Goal>> goals = convert::FromProto(proto.goals());
+  absl::StatusOr<std::vector<Goal>> goals =
+      convert::FromProto(proto.goals(), nullptr);
   if (!goals.ok()) return goals.status();
   Continuation continuation;
   continuation.goals = *std::move(goals);

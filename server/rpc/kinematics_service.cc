@@ -144,7 +144,8 @@ absl::Status SolveInverseKinematics(
   const Skeleton& skeleton = *stored->skeleton;
 
   Violations violations;
-  absl::StatusOr<std::vector<Goal>> goals = convert::FromProto(request.goals());
+  absl::StatusOr<std::vector<Goal>> goals =
+      convert::FromProto(request.goals(), &skeleton);
   violations.AddStatus("", goals.status());
   absl::StatusOr<SolverOptions> options =
       convert::FromProto(request.solver_options());

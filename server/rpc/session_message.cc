@@ -21,8 +21,10 @@ namespace {
 
 constexpr char kEtagPrefix[] = "r";
 
-absl::Status SetGoals(const v1::Session& proto, SessionState& state) {
-  absl::StatusOr<std::vector<Goal>> goals = convert::FromProto(proto.goals());
+absl::Status SetGoals(const v1::Session& proto, const Skeleton& skeleton,
+                      SessionState& state) {
+  absl::StatusOr<std::vector<Goal>> goals =
+      convert::FromProto(proto.goals(), &skeleton);
   if (goals.ok()) state.goals = std::move(*goals);
   return goals.status();
 }
@@ -112,7 +114,7 @@ void ToProto(const Session& session, bool draining, v1::Session* proto) {
 absl::Status StateFromProto(const v1::Session& proto, const Skeleton& skeleton,
                             const Limits& limits, SessionState& state) {
   Violations violations;
-  violations.AddStatus("", SetGoals(proto, state));
+  violations.AddStatus("", SetGoals(proto, skeleton, state));
   violations.AddStatus("", SetOptions(proto, state));
   violations.AddStatus("", SetPose(proto, skeleton, state));
   violations.AddStatus("", SetPlace(proto, state));
@@ -146,7 +148,7 @@ absl::Status UpdateState(const v1::UpdateSessionRequest& request,
   const auto note = [&violations](const absl::Status& status) {
     violations.AddStatus("session", status);
   };
-  if (paths.contains("goals")) note(SetGoals(proto, state));
+  if (paths.contains("goals")) note(SetGoals(proto, skeleton, state));
   if (paths.contains("solver_options")) note(SetOptions(proto, state));
   if (paths.contains("pose")) note(SetPose(proto, skeleton, state));
   if (paths.contains("world_from_skeleton")) note(SetPlace(proto, state));

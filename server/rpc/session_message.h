@@ -20,9 +20,10 @@ namespace gelenk::server {
 // Everything of `session`; `draining` is the server's.
 void ToProto(const Session& session, bool draining, v1::Session* proto);
 
-// What a new session shall be, every violation listed but those that goals show
-// only when a problem is made of them. With an error `state` holds the parts
-// that are good, so that its goals can be looked at all the same.
+// What a new session shall be, every violation listed but those that goals, all
+// of a kind, show only when a problem is made of them. With an error `state`
+// holds the parts that are good, so that its goals can be looked at all the
+// same.
 absl::Status StateFromProto(const v1::Session& proto, const Skeleton& skeleton,
                             const Limits& limits, SessionState& state);
 

@@ -95,7 +95,7 @@ TEST(ConvertPlayedGoalTest, EveryFieldArrives) {
   ASSERT_EQ(goal.targets.size(), 1u);
   EXPECT_EQ(goal.targets[0].time_s, 3);
   EXPECT_EQ(goal.targets[0].world_pose.translation.x(), 4);
-  protos.Add();
+  protos.Add()->mutable_goal()->set_goal_id("wishless");
   EXPECT_THAT(ViolationLines(FromProto(protos).status()),
               ElementsAre(HasSubstr("goals[1].goal.kind")));
 }

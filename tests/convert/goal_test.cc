@@ -4,10 +4,13 @@
 #include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "gelenk/math/rotation.h"
+#include "tests/testing/example_skeletons.h"
 #include "tests/testing/violation_lines.h"
 
 namespace gelenk::convert {
@@ -15,6 +18,7 @@ namespace {
 
 using ::gelenk::testing::ViolationLines;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 v1::Goal PositionMessage(const std::string& id) {
   v1::Goal proto;
@@ -214,16 +218,51 @@ TEST(ConvertGoalTest, EveryGoalThatWishesNothingIsNamed) {
   proto.add_goals()->set_goal_id("first");
   *proto.add_goals() = PositionMessage("second");
   proto.add_goals()->set_goal_id("third\n");
-  EXPECT_THAT(ViolationLines(FromProto(proto.goals()).status()),
+  EXPECT_THAT(ViolationLines(FromProto(proto.goals(), nullptr).status()),
               ElementsAre("goals[0].kind: goal \"first\" wishes nothing",
+                          HasSubstr("goals[2].goal_id: "),
                           "goals[2].kind: goal \"third\\n\" wishes nothing"));
+}
+
+TEST(ConvertGoalTest, AMissingKindHidesNothing) {
+  v1::Session proto;
+  *proto.add_goals() = PositionMessage("twice");
+  proto.mutable_goals(0)->mutable_position()->mutable_world_position()->set_y(
+      NAN);
+  v1::Goal* wishless = proto.add_goals();
+  wishless->set_goal_id("twice");
+  wishless->set_weight(-1);
+  wishless->set_priority(99);
+  *proto.add_goals() = RotationMessage("other");
+  proto.mutable_goals(2)->set_weight(-2);
+  const auto skeleton = gelenk::testing::PandaArm();
+  EXPECT_THAT(ViolationLines(FromProto(proto.goals(), skeleton.get()).status()),
+              ElementsAre(HasSubstr("goals[0].position.world_position"),
+                          HasSubstr("goals[0].position.end_effector_id: no "),
+                          HasSubstr("goals[1].weight: "),
+                          HasSubstr("goals[1].priority: "),
+                          "goals[1].kind: goal \"twice\" wishes nothing",
+                          "goals[1].goal_id: duplicate \"twice\"",
+                          HasSubstr("goals[2].weight: "),
+                          HasSubstr("goals[2].rotation.end_effector_id: no ")));
+}
+
+TEST(ConvertGoalTest, AMissingKindAmongTooManyIsNotAll) {
+  v1::Session proto;
+  for (int i = 0; i <= kMaxGoals; ++i) {
+    *proto.add_goals() = PositionMessage(absl::StrCat("g", i));
+  }
+  proto.mutable_goals(1)->clear_kind();
+  EXPECT_THAT(ViolationLines(FromProto(proto.goals(), nullptr).status()),
+              ElementsAre("goals: want at most 256, got 257",
+                          "goals[1].kind: goal \"g1\" wishes nothing"));
 }
 
 TEST(ConvertGoalTest, ListsComeRoundInOrder) {
   v1::Session proto;
   *proto.add_goals() = PoseMessage("c");
   *proto.add_goals() = PositionMessage("a");
-  const auto goals = FromProto(proto.goals());
+  const auto goals = FromProto(proto.goals(), nullptr);
   ASSERT_TRUE(goals.ok());
   v1::Session again;
   *again.add_goals() = RotationMessage("replaced");

@@ -2,8 +2,10 @@
 
 #include <type_traits>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/goal_list_check.h"
 #include "gelenk/ik/goals/goal_check.h"
 #include "gelenk/skeleton/joint_check.h"
 
@@ -19,6 +21,16 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
 
 template <class Kind>
 using TargetType = std::decay_t<decltype(TargetOf(std::declval<Kind>()))>;
+
+void CheckBesideKind(const Goal& goal, Violations& violations) {
+  CheckId("goal_id", goal.id, violations);
+  CheckNotNegative("weight", goal.weight, violations);
+  if (goal.priority < 0 || goal.priority >= kMaxPriorities) {
+    violations.Add("priority",
+                   absl::StrFormat("want 0 to %d, got %d", kMaxPriorities - 1,
+                                   goal.priority));
+  }
+}
 
 }  // namespace
 
@@ -77,16 +89,18 @@ absl::Status CheckAndNormalize(GoalTarget& target) {
 
 absl::Status CheckAndNormalize(Goal& goal) {
   Violations violations;
-  CheckId("goal_id", goal.id, violations);
-  CheckNotNegative("weight", goal.weight, violations);
-  if (goal.priority < 0 || goal.priority >= kMaxPriorities) {
-    violations.Add("priority",
-                   absl::StrFormat("want 0 to %d, got %d", kMaxPriorities - 1,
-                                   goal.priority));
-  }
+  CheckBesideKind(goal, violations);
   Violations of_kind;
   std::visit([&](auto& kind) { CheckAndNormalize(kind, of_kind); }, goal.kind);
   violations.AddStatus(GoalKindName(goal.kind), of_kind.ToStatus());
+  return violations.ToStatus();
+}
+
+absl::Status CheckWithoutKind(const Goal& goal) {
+  Violations violations;
+  CheckBesideKind(goal, violations);
+  violations.Add("kind",
+                 absl::StrCat("goal ", QuotedId(goal.id), " wishes nothing"));
   return violations.ToStatus();
 }
 

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <optional>
-#include <string>
 #include <utility>
 
-#include "absl/container/flat_hash_set.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "gelenk/base/number_check.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/ik/goal_list_check.h"
 #include "gelenk/ik/goals/frame_rows.h"
 #include "gelenk/ik/goals/pose_rows.h"
 #include "gelenk/ik/posture_terms.h"
@@ -59,24 +58,11 @@ absl::StatusOr<IkProblem> IkProblem::Create(
     std::shared_ptr<const Skeleton> skeleton, std::vector<Goal> goals,
     const TreeSource& trees) {
   Violations violations;
-  if (goals.size() > kMaxGoals) {
-    violations.Add("goals", absl::StrFormat("want at most %d, got %d",
-                                            kMaxGoals, goals.size()));
-    return violations.ToStatus();
-  }
+  GoalListCheck check(skeleton.get(), violations);
+  if (!check.AddCount(goals.size())) return violations.ToStatus();
   std::vector<EffectorTask> tasks;
-  absl::flat_hash_set<std::string> ids;
-  for (size_t i = 0; i < goals.size(); ++i) {
-    Goal& goal = goals[i];
-    const std::string field = absl::StrCat("goals[", i, "]");
-    violations.AddStatus(field, CheckAndNormalize(goal));
-    if (!ids.insert(goal.id).second) {
-      violations.Add(absl::StrCat(field, ".goal_id"),
-                     absl::StrCat("duplicate ", QuotedId(goal.id)));
-    }
-    const absl::Status on_skeleton = CheckOn(*skeleton, goal);
-    violations.AddStatus(field, on_skeleton);
-    if (!on_skeleton.ok()) continue;
+  for (Goal& goal : goals) {
+    if (!check.Add(goal)) continue;
     tasks.push_back(std::visit(
         [&](const auto& kind) { return TaskOf(*skeleton, kind); }, goal.kind));
   }
