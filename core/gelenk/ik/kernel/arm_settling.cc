@@ -18,6 +18,9 @@ constexpr int kWidth = GELENK_KERNEL_LANES < 4 ? GELENK_KERNEL_LANES : 4;
 constexpr double kLeastShift = 1e-12;
 constexpr double kFirstShift = 1e-9;
 constexpr double kShiftGrowth = 10;
+// Beyond, even the softest joint (see SparseTree) is held by far more than any
+// curvature: what is not definite then is no number.
+constexpr double kMostShift = 1e9;
 // Of the energy: a step that promises less ends it.
 constexpr double kLeastGain = 1e-9;
 // The region of trust grows, stays or shrinks by what of the promise came true.
@@ -63,10 +66,13 @@ class Settling {
       }
       // The smallest shift that makes the free part definite.
       bool definite = Factorize(shift * mean_);
-      while (!definite) {
-        if (shift > 1e3) break;
+      while (!definite && shift < kMostShift) {
         shift *= kShiftGrowth;
         definite = Factorize(shift * mean_);
+      }
+      if (!definite) {
+        attempt.end = AttemptEnd::kStationary;
+        break;
       }
       FindStep();
       double gain = Promise();
@@ -161,9 +167,18 @@ class Settling {
   bool Factorize(double shift) {
     for (int r = 0; r < free_count_; ++r) {
       FactorizeRow(r, shift);
-      if (!(pivots_[r] > 0.5 * shift)) return false;
+      if (!HasFirmPivot(r, shift)) return false;
     }
     return true;
+  }
+
+  // Whether more is left of the pivot than half of what the shift gave it.
+  bool HasFirmPivot(int r, double shift) const {
+    return pivots_[r] > 0.5 * Shift(order_[r], shift);
+  }
+
+  double Shift(int i, double shift) const {
+    return shift / (arm_.ease[i] * arm_.ease[i]);
   }
 
   // Row r, those above it being done.
@@ -171,7 +186,7 @@ class Settling {
     const int i = order_[r];
     for (int c = 0; c <= r; ++c) {
       double sum = Hessian(i, order_[c]);
-      if (c == r) sum += shift / (arm_.ease[i] * arm_.ease[i]);
+      if (c == r) sum += Shift(i, shift);
       for (int k = 0; k < c; ++k) {
         sum -= factor_[r][k] * factor_[c][k] * pivots_[k];
       }
@@ -227,7 +242,7 @@ class Settling {
       if (settings_.lower[i] == settings_.upper[i]) continue;
       order_[count] = i;
       FactorizeRow(count, shift);
-      if (pivots_[count] > 0.5 * shift) {
+      if (HasFirmPivot(count, shift)) {
         ++count;
         continue;
       }
