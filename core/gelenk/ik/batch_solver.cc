@@ -127,12 +127,7 @@ void BatchSolver::SolveAlone(IkProblem& problem,
   for (size_t g = 0; g < goals; ++g) {
     problem.SetTarget(static_cast<int>(g), targets[first + g]);
   }
-  if (problem.needs_levels()) {
-    prioritized_.Solve(problem, options, start, positions.col(column), alone_,
-                       stop);
-  } else {
-    solver_.Solve(problem, options, start, positions.col(column), alone_, stop);
-  }
+  solver_.Solve(problem, options, start, positions.col(column), alone_, stop);
   report.outcomes[column] = alone_.outcome;
   report.iteration_counts[column] = alone_.iteration_count;
   report.restart_counts[column] = alone_.restart_count;

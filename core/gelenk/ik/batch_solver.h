@@ -10,10 +10,9 @@
 // Arms (see SerialArm) are solved as many side by side as a vector register has
 // lanes, a new target taking the lane of one that is done; what is not settled
 // there, and every other problem, is left to LevenbergMarquardtSolver, one by
-// one; problems that need levels to PrioritizedSolver. So each answer is as
-// good as one of its own: all that Solve of LevenbergMarquardtSolver promises
-// holds. Which of several solutions a cold arm finds may differ where the start
-// itself leads to none.
+// one. So each answer is as good as one of its own: all that Solve of
+// LevenbergMarquardtSolver promises holds. Which of several solutions a cold
+// arm finds may differ where the start itself leads to none.
 //
 // Deterministic: an answer does not depend on its neighbours. Allocates nothing
 // once it has seen a batch of that size, except in the report. Not thread-safe.
@@ -29,7 +28,6 @@
 #include "gelenk/ik/instruction_set.h"
 #include "gelenk/ik/kernel/arm_layout.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
-#include "gelenk/ik/prioritized_solver.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
 #include "gelenk/ik/stop_condition.h"
@@ -77,7 +75,6 @@ class BatchSolver {
 
   kernel::ArmKernel kernel_;
   LevenbergMarquardtSolver solver_;
-  PrioritizedSolver prioritized_;
   SolveReport alone_;
   // Of one block of arms.
   std::vector<kernel::ArmTarget> arm_targets_;

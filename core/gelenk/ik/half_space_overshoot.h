@@ -1,8 +1,9 @@
 // How far a solve threw a point beyond the plane that it was to come to.
 //
 // A half-space pulls as long as its point is behind the plane and lets go when
-// it is through, so that a long step may end well beyond. LevenbergMarquardt-
-// Solver takes such steps; PrioritizedSolver binds the point to its plane.
+// it is through, so that a long step may end well beyond. The steps of
+// LevenbergMarquardtSolver are such; those of PrioritizedSolver bind the point
+// to its plane.
 #ifndef GELENK_IK_HALF_SPACE_OVERSHOOT_H_
 #define GELENK_IK_HALF_SPACE_OVERSHOOT_H_
 

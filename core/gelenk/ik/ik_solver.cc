@@ -1,6 +1,5 @@
 #include "gelenk/ik/ik_solver.h"
 
-#include "gelenk/ik/half_space_overshoot.h"
 #include "gelenk/ik/solver_method.h"
 #include "gelenk/ik/stop_condition.h"
 
@@ -13,9 +12,6 @@ SolverMethod Choose(const SolverOptions& options) {
              ? SolverMethod::kLevenbergMarquardt
              : options.method;
 }
-
-// Beyond its plane by no more than this a point may stay that was behind it.
-constexpr double kMostOvershoot_m = 1e-3;
 
 struct Deadline {
   IkSolver::Clock clock;
@@ -74,34 +70,9 @@ void IkSolver::Solve(const IkProblem& problem, const SolverOptions& options,
     case SolverMethod::kFabrik:
       return fabrik_.Solve(problem, options, positions, report, stop);
     default:
-      return SolveByLevenbergMarquardt(problem, options, start, positions,
-                                       report, stop, bounds);
+      return levenberg_marquardt_.Solve(problem, options, start, positions,
+                                        report, stop, bounds);
   }
-}
-
-void IkSolver::SolveByLevenbergMarquardt(const IkProblem& problem,
-                                         const SolverOptions& options,
-                                         SolveStart start, VectorView positions,
-                                         SolveReport& report,
-                                         const StopCondition& stop,
-                                         const StepBounds* bounds) {
-  if (problem.needs_levels()) {
-    prioritized_.Solve(problem, options, start, positions, report, stop,
-                       bounds);
-    return;
-  }
-  start_.assign(positions.begin(), positions.end());
-  levenberg_marquardt_.Solve(problem, options, start, positions, report, stop,
-                             bounds);
-  const Eigen::Map<const Eigen::VectorXd> before(start_.data(), start_.size());
-  if (report.outcome != SolveOutcome::kConverged ||
-      HalfSpaceOvershoot(problem, before, positions) <= kMostOvershoot_m) {
-    return;
-  }
-  const int iterations = report.iteration_count;
-  positions = before;
-  prioritized_.Solve(problem, options, start, positions, report, stop, bounds);
-  report.iteration_count += iterations;
 }
 
 }  // namespace gelenk

@@ -3,13 +3,9 @@
 // Owns a solver of each method, made when it is first needed, and with it their
 // working memory. Not thread-safe: one per thread. Deterministic unless a time
 // limit strikes. Levenberg-Marquardt allocates nothing once it has seen a
-// problem of that size; the others say for themselves. It goes level by level
-// (see PrioritizedSolver) where the problem needs that, and where a long step
-// threw a point far beyond the plane that it was to come to.
+// problem of that size; the others say for themselves.
 #ifndef GELENK_IK_IK_SOLVER_H_
 #define GELENK_IK_IK_SOLVER_H_
-
-#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/time/time.h"
@@ -18,7 +14,6 @@
 #include "gelenk/ik/instruction_set.h"
 #include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/ik/newton_solver.h"
-#include "gelenk/ik/prioritized_solver.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
 #include "gelenk/ik/step_bounds.h"
@@ -57,15 +52,7 @@ class IkSolver {
 
  private:
   Clock clock_;
-  void SolveByLevenbergMarquardt(const IkProblem& problem,
-                                 const SolverOptions& options, SolveStart start,
-                                 VectorView positions, SolveReport& report,
-                                 const StopCondition& stop,
-                                 const StepBounds* bounds);
-
-  std::vector<double> start_;
   LevenbergMarquardtSolver levenberg_marquardt_;
-  PrioritizedSolver prioritized_;
   NewtonSolver newton_{SolverMethod::kNewton};
   NewtonSolver pseudo_inverse_{SolverMethod::kPseudoInverse};
   NewtonSolver minimal_change_{SolverMethod::kMinimalChange};

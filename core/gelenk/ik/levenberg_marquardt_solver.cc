@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "gelenk/ik/half_space_overshoot.h"
 #include "gelenk/ik/kernel/rotation_bounds.h"
 #include "gelenk/ik/kernel_exchange.h"
 #include "gelenk/ik/posture_terms.h"
@@ -22,6 +23,9 @@ constexpr double kOnBound = 1e-9;
 
 // Iterations of the last attempt against those of the others.
 constexpr int kPolishFactor = 4;
+
+// Beyond its plane by no more than this a point may stay that was behind it.
+constexpr double kMostOvershoot_m = 1e-3;
 
 kernel::AttemptFunction AttemptFor(InstructionSet level) {
 #ifdef GELENK_X86_LEVELS
@@ -219,6 +223,27 @@ void LevenbergMarquardtSolver::Solve(const IkProblem& problem,
                                      SolveReport& report,
                                      const StopCondition& stop,
                                      const StepBounds* bounds) {
+  if (problem.needs_levels()) {
+    prioritized_.Solve(problem, options, start, positions, report, stop,
+                       bounds);
+    return;
+  }
+  SolveAtOnce(problem, options, start, positions, report, stop, bounds);
+  if (report.outcome != SolveOutcome::kConverged ||
+      HalfSpaceOvershoot(problem, View(start_), positions) <=
+          kMostOvershoot_m) {
+    return;
+  }
+  const int iterations = report.iteration_count;
+  positions = View(start_);
+  prioritized_.Solve(problem, options, start, positions, report, stop, bounds);
+  report.iteration_count += iterations;
+}
+
+void LevenbergMarquardtSolver::SolveAtOnce(
+    const IkProblem& problem, const SolverOptions& options, SolveStart start,
+    VectorView positions, SolveReport& report, const StopCondition& stop,
+    const StepBounds* bounds) {
   const bool bounded = start == SolveStart::kWarm &&
                        (options.max_step.has_value() || bounds != nullptr);
   const auto narrow = [&](const kernel::TreeLayout& tree,

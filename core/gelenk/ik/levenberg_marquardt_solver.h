@@ -10,6 +10,10 @@
 // without fill-in. A cold start that gets nowhere is given up early and tried
 // from another start.
 //
+// It goes level by level, by PrioritizedSolver, where the problem needs that,
+// and where a long step threw a point far beyond the plane that it was to come
+// to.
+//
 // Deterministic: the answer depends on the problem, the options, the start and
 // the instruction set, on nothing else. Allocates nothing once it has seen a
 // problem of that size. Not thread-safe: one solver per thread; it holds the
@@ -28,6 +32,7 @@
 #include "gelenk/ik/kernel/arm_layout.h"
 #include "gelenk/ik/kernel/chain_layout.h"
 #include "gelenk/ik/kernel/tree_layout.h"
+#include "gelenk/ik/prioritized_solver.h"
 #include "gelenk/ik/solve_report.h"
 #include "gelenk/ik/solver_options.h"
 #include "gelenk/ik/step_bounds.h"
@@ -62,6 +67,10 @@ class LevenbergMarquardtSolver {
   using Narrow =
       absl::FunctionRef<void(const kernel::TreeLayout&, kernel::Settings&)>;
 
+  // All goals at once.
+  void SolveAtOnce(const IkProblem& problem, const SolverOptions& options,
+                   SolveStart start, VectorView positions, SolveReport& report,
+                   const StopCondition& stop, const StepBounds* bounds);
   // By the kernels of arms; false, and nothing done, where they do not take the
   // start.
   bool SolveAsArm(const IkProblem& problem, const SerialArm& arm,
@@ -110,6 +119,7 @@ class LevenbergMarquardtSolver {
   std::vector<double> change_;
   std::vector<uint8_t> moves_;  // per joint
   std::vector<int> moving_joints_;
+  PrioritizedSolver prioritized_;
 };
 
 }  // namespace gelenk

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "gelenk/ik/batch_solver.h"
+#include "gelenk/ik/levenberg_marquardt_solver.h"
 #include "gelenk/skeleton/pose.h"
 #include "tests/core/ik/goals/solve_goals.h"
 #include "tests/testing/example_skeletons.h"
@@ -46,18 +50,47 @@ TEST(HalfSpaceGoalTest, LiftsWhatIsBehind) {
   EXPECT_LE(reached, height + 0.01 + 1e-3);
 }
 
-// A long step is not to throw it far beyond; by its own solver it does.
+// A long step is not to throw it far beyond, whoever solves.
 TEST(HalfSpaceGoalTest, EndsOnThePlaneFromFarBehindIt) {
   const auto leg = Leg(true);
   const Eigen::VectorXd start = HingedLegAt(0.4, 0.8);
   const double height = OriginOf(*leg, start, "sole").y();
+  LevenbergMarquardtSolver solver;
   for (double depth : {0.02, 0.1, 0.3, 0.5}) {
-    const Solved solved = SolveGoals(
-        leg, {GoalOf(HalfSpaceGoal{"sole", {0, 1, 0}, height + depth})}, start);
+    const Goal ground =
+        GoalOf(HalfSpaceGoal{"sole", {0, 1, 0}, height + depth});
+    const Solved solved = SolveGoals(leg, {ground}, start);
     EXPECT_EQ(solved.report.outcome, SolveOutcome::kConverged);
     EXPECT_NEAR(OriginOf(*leg, solved.positions, "sole").y(), height + depth,
                 1e-3)
         << depth;
+    Eigen::VectorXd directly = start;
+    SolveReport report;
+    solver.Solve(IkProblem::Create(leg, {ground}).value(), {},
+                 SolveStart::kWarm, directly, report);
+    EXPECT_EQ(directly, solved.positions) << depth;
+    EXPECT_EQ(report.iteration_count, solved.report.iteration_count);
+  }
+}
+
+TEST(HalfSpaceGoalTest, EndsOnThePlaneInBatches) {
+  const auto leg = Leg(true);
+  const Eigen::VectorXd start = HingedLegAt(0.4, 0.8);
+  const double height = OriginOf(*leg, start, "sole").y();
+  std::vector<GoalTarget> targets;
+  for (double depth : {0.02, 0.1, 0.3, 0.5}) {
+    targets.push_back(Plane{{0, 1, 0}, height + depth});
+  }
+  IkProblem problem =
+      IkProblem::Create(leg, {GoalOf(HalfSpaceGoal{"sole"})}).value();
+  Eigen::MatrixXd positions = start.replicate(1, 4);
+  BatchReport report;
+  BatchSolver().Solve(problem, targets, {}, SolveStart::kWarm, positions,
+                      report);
+  for (int c = 0; c < 4; ++c) {
+    EXPECT_EQ(report.outcomes[c], SolveOutcome::kConverged);
+    EXPECT_NEAR(OriginOf(*leg, positions.col(c), "sole").y(),
+                std::get<Plane>(targets[c]).offset_m, 1e-3);
   }
 }
 
