@@ -15,6 +15,7 @@
 #include "gelenk/skeleton/joint_check.h"
 #include "gelenk/skin/example_shapes.h"
 #include "gelenk/skin/nurbs_skin.h"
+#include "gelenk/skin/section_fit.h"
 #include "gelenk/skin/weighted_skin.h"
 
 namespace gelenk::server {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "gelenk/skin/section_fit.h"
 
 namespace gelenk {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/skin/mesh_places.h"
 
 namespace gelenk {
 namespace {
@@ -84,7 +85,7 @@ class Selection {
     CheckVertex(component.vertex, "component_vertex");
     if (!violations_.empty()) return;
     const std::vector<int> components =
-        FindComponents(FindEdges(vertex_count(), mesh_.triangles));
+        FindComponentsOfPlaces(mesh_.triangles, FindPlaces(mesh_.positions));
     for (int v = 0; v < vertex_count(); ++v) {
       if (components[v] == components[component.vertex]) {
         selected_.push_back(v);
@@ -132,25 +133,28 @@ class Selection {
 
   // The corner nearest to the point, and all within the radius along edges.
   void SelectAround(int triangle, const Vector3d& point, double radius_m) {
-    const MeshEdges edges = FindEdges(vertex_count(), mesh_.triangles);
+    const std::vector<int> places = FindPlaces(mesh_.positions);
+    const MeshEdges edges = FindEdgesOfPlaces(mesh_.triangles, places);
+    std::vector<bool> is_selected(vertex_count(), false);
     std::vector<double> distances(vertex_count(),
                                   std::numeric_limits<double>::infinity());
     using Entry = std::pair<double, int>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
     Entry nearest = {std::numeric_limits<double>::infinity(), -1};
-    for (int corner : mesh_.triangles[triangle]) {
+    for (int vertex : mesh_.triangles[triangle]) {
+      const int corner = places[vertex];
       const double distance = (mesh_.positions[corner] - point).norm();
       nearest = std::min(nearest, {distance, corner});
       distances[corner] = distance;
       open.push({distance, corner});
     }
-    selected_.push_back(nearest.second);
+    is_selected[nearest.second] = true;
     while (!open.empty()) {
       const auto [distance, v] = open.top();
       open.pop();
       if (distance > distances[v]) continue;
       if (distance > radius_m) break;
-      selected_.push_back(v);
+      is_selected[v] = true;
       for (int other : edges.of(v)) {
         const double longer =
             distance + (mesh_.positions[other] - mesh_.positions[v]).norm();
@@ -158,6 +162,9 @@ class Selection {
         distances[other] = longer;
         open.push({longer, other});
       }
+    }
+    for (int v = 0; v < vertex_count(); ++v) {
+      if (is_selected[places[v]]) selected_.push_back(v);
     }
   }
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <queue>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "gelenk/base/violations.h"
+#include "gelenk/skin/mesh_places.h"
 #include "gelenk/skin/vertex_placement.h"
 
 namespace gelenk {
@@ -19,12 +19,11 @@ using Eigen::Vector3d;
 // A surface looks away from its bone: below this cosine it does not.
 constexpr double kFacingCosine = 0.2;
 constexpr double kFacingPenalty = 4;
-// Sections reach a little beyond the surface; wider ones take in the
-// neighbours'.
-constexpr double kSectionMargin = 1.15;
-// Of the surface's distances from a bone: where a limb branches off, what comes
-// first is another limb's.
-constexpr double kSectionQuantile = 0.9;
+// Sections a vertex may lie beyond that no volume holds, and still be of the
+// one chain that is as near: its limb is thicker there than in the mean.
+constexpr double kFarReach = 2;
+// Another chain that scores worse by this factor is none to doubt for.
+constexpr double kClearFactor = 1.5;
 
 class MeshBinder {
  public:
@@ -34,21 +33,62 @@ class MeshBinder {
         mesh_(mesh),
         assigned_(std::move(assigned)),
         placer_(rig),
-        normals_(VertexNormals(mesh)),
-        edges_(FindEdges(static_cast<int>(mesh.positions.size()),
-                         mesh.triangles)) {}
+        places_(FindPlaces(mesh.positions)),
+        edges_(FindEdgesOfPlaces(mesh.triangles, places_)) {
+    FindNormals();
+    ShareAssignments();
+  }
 
+  // Binds the first vertex of each place; the others there go with it, or the
+  // surface would tear, but where somebody decided otherwise.
   SkinBinding Bind() {
     const int count = static_cast<int>(mesh_.positions.size());
     binding_.vertices.resize(count);
     labels_.assign(count, -1);
-    for (int v = 0; v < count; ++v) FindCandidates(v);
+    for (int v = 0; v < count; ++v) {
+      if (IsFirst(v)) FindCandidates(v);
+    }
     Flood();
-    for (int v = 0; v < count; ++v) Place(v);
+    for (int v = 0; v < count; ++v) {
+      if (IsFirst(v)) Readmit(v);
+    }
+    for (int v = 0; v < count; ++v) {
+      if (IsFirst(v)) {
+        Place(v);
+      } else if (assigned_[v] == assigned_[places_[v]]) {
+        binding_.vertices[v] = binding_.vertices[places_[v]];
+      } else {
+        FindCandidates(v);
+        Place(v);
+      }
+    }
     return std::move(binding_);
   }
 
  private:
+  bool IsFirst(int v) const { return places_[v] == v; }
+
+  // Of places: the means of their vertices'.
+  void FindNormals() {
+    normals_ = VertexNormals(mesh_);
+    for (size_t v = 0; v < places_.size(); ++v) {
+      if (!IsFirst(static_cast<int>(v))) normals_[places_[v]] += normals_[v];
+    }
+    for (Vector3d& normal : normals_) normal.stableNormalize();
+  }
+
+  // What was decided for one vertex holds for those at its place that nothing
+  // was decided for: the first of them stands for the place.
+  void ShareAssignments() {
+    for (size_t v = 0; v < places_.size(); ++v) {
+      const VertexAssignment*& first = assigned_[places_[v]];
+      if (assigned_[v] != nullptr && first == nullptr) first = assigned_[v];
+    }
+    for (size_t v = 0; v < places_.size(); ++v) {
+      if (assigned_[v] == nullptr) assigned_[v] = assigned_[places_[v]];
+    }
+  }
+
   // The class of the vertex, its candidates, and its chain if that is sure.
   void FindCandidates(int v) {
     VertexBinding& vertex = binding_.vertices[v];
@@ -59,7 +99,37 @@ class MeshBinder {
       labels_[v] = rig_.chain(vertex.link);
       return;
     }
-    placer_.FindNear(mesh_.positions[v], 1, near_);
+    FindBestOfChains(v, 1);
+    if (best_.empty()) {
+      vertex.binding_class = BindingClass::kOutside;
+      return;
+    }
+    if (best_.size() == 1) {
+      labels_[v] = rig_.chain(best_[0].link);
+      return;
+    }
+    vertex.binding_class = BindingClass::kAmbiguous;
+    vertex.candidate_count = static_cast<int>(best_.size());
+    binding_.candidates.insert(binding_.candidates.end(), best_.begin(),
+                               best_.end());
+  }
+
+  // A vertex that no volume holds, but that the surface gives to the chain that
+  // is clearly the nearest, is in no doubt.
+  void Readmit(int v) {
+    VertexBinding& vertex = binding_.vertices[v];
+    if (vertex.binding_class != BindingClass::kOutside) return;
+    FindBestOfChains(v, kFarReach);
+    if (best_.empty() || rig_.chain(best_[0].link) != labels_[v]) return;
+    if (best_.size() > 1 && best_[1].score < kClearFactor * best_[0].score) {
+      return;
+    }
+    vertex.binding_class = BindingClass::kUnique;
+  }
+
+  // The best candidate of each chain within so many sections, best first.
+  void FindBestOfChains(int v, double reach) {
+    placer_.FindNear(mesh_.positions[v], reach, near_);
     best_.clear();
     for (const Placement& placement : near_) {
       const double cosine = placement.offset_m.normalized().dot(normals_[v]);
@@ -76,20 +146,8 @@ class MeshBinder {
         *same = candidate;
       }
     }
-    if (best_.empty()) {
-      vertex.binding_class = BindingClass::kOutside;
-      return;
-    }
-    if (best_.size() == 1) {
-      labels_[v] = rig_.chain(best_[0].link);
-      return;
-    }
-    vertex.binding_class = BindingClass::kAmbiguous;
     std::sort(best_.begin(), best_.end(),
               [](const auto& a, const auto& b) { return a.score < b.score; });
-    vertex.candidate_count = static_cast<int>(best_.size());
-    binding_.candidates.insert(binding_.candidates.end(), best_.begin(),
-                               best_.end());
   }
 
   bool CanBeOf(int v, int chain) const {
@@ -173,140 +231,13 @@ class MeshBinder {
   const TriangleMesh& mesh_;
   std::vector<const VertexAssignment*> assigned_;  // of each vertex, or null
   VertexPlacer placer_;
-  std::vector<Vector3d> normals_;
-  MeshEdges edges_;
-  std::vector<int> labels_;  // of each vertex: its chain, or -1
+  std::vector<int> places_;
+  MeshEdges edges_;                // of places
+  std::vector<Vector3d> normals_;  // of places, at the first vertex of each
+  std::vector<int> labels_;        // of each vertex: its chain, or -1
   std::vector<Placement> near_;
   std::vector<BindingCandidate> best_;
   SkinBinding binding_;
-};
-
-// Looks from the bone outwards, in every direction: what comes first is the
-// limb's own surface, whatever lies beyond.
-// A point of a surface and its unit normal.
-struct SurfacePoint {
-  Vector3d position;
-  Vector3d normal;
-};
-
-// Points between the vertices of a coarse mesh are this part of a link apart,
-// in the mean: as close as a section is looked at.
-constexpr double kSpacingOfLink = 1.0 / 16;
-// A triangle is cut into so many parts a side at most, and so many points are
-// looked at in all.
-constexpr int kMostCuts = 16;
-constexpr size_t kMostPoints = size_t{1} << 21;
-
-double SpacingFor(const VolumeRig& rig) {
-  double length_m = 0;
-  for (const SkinLink& link : rig.links()) length_m += link.length_m;
-  return kSpacingOfLink * length_m / rig.link_count();
-}
-
-// The vertices, and points inside triangles that are larger than the spacing:
-// the limbs of a coarse mesh have vertices at their ends only.
-std::vector<SurfacePoint> PointsOf(const TriangleMesh& mesh, double spacing_m) {
-  const std::vector<Vector3d> normals = VertexNormals(mesh);
-  std::vector<SurfacePoint> points;
-  for (size_t v = 0; v < normals.size(); ++v) {
-    points.push_back({mesh.positions[v], normals[v]});
-  }
-  for (const Triangle& triangle : mesh.triangles) {
-    const Vector3d& a = mesh.positions[triangle[0]];
-    const Vector3d ab = mesh.positions[triangle[1]] - a;
-    const Vector3d ac = mesh.positions[triangle[2]] - a;
-    const double longest_m = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-    if (longest_m <= spacing_m || points.size() >= kMostPoints) continue;
-    const int cuts = static_cast<int>(
-        std::min<double>(std::ceil(longest_m / spacing_m), kMostCuts));
-    const Vector3d normal = ab.cross(ac).normalized();
-    for (int i = 0; i <= cuts; ++i) {
-      for (int j = 0; i + j <= cuts; ++j) {
-        points.push_back({a + (i * ab + j * ac) / cuts, normal});
-      }
-    }
-  }
-  return points;
-}
-
-class SectionFitter {
- public:
-  SectionFitter(const VolumeRig& rig, int link)
-      : rotation_(rig.rest().rotation(link)),
-        origin_(rig.rest().origin(link)),
-        link_(rig.link(link)) {
-    nearest_.fill(Eigen::Vector2d::Zero());
-    distances_.fill(std::numeric_limits<double>::infinity());
-  }
-
-  // The section as it is where there is too little to see.
-  Eigen::Vector2d Fit(absl::Span<const SurfacePoint> points) {
-    for (const SurfacePoint& point : points) {
-      Look(point.position, point.normal);
-    }
-    std::vector<Eigen::Vector2d> seen;
-    for (int bin = 0; bin < kBins; ++bin) {
-      if (std::isfinite(distances_[bin])) seen.push_back(nearest_[bin]);
-    }
-    if (static_cast<int>(seen.size()) < kFewDirections) {
-      return link_.half_extents_m;
-    }
-    // How flat the section is, then how large: limbs taper.
-    Eigen::Vector2d shape;
-    for (int k = 0; k < 2; ++k) {
-      shape[k] = Quantile(
-          seen, [k](const Eigen::Vector2d& p) { return std::abs(p[k]); });
-    }
-    if (!(shape.minCoeff() > 0)) return link_.half_extents_m;
-    const double size = Quantile(seen, [&](const Eigen::Vector2d& p) {
-      return p.cwiseQuotient(shape).norm();
-    });
-    return kSectionMargin * size * shape;
-  }
-
- private:
-  static constexpr int kSlices = 8;
-  static constexpr int kDirections = 16;
-  static constexpr int kBins = kSlices * kDirections;
-  static constexpr int kFewDirections = kBins / 4;
-
-  template <typename Measure>
-  static double Quantile(const std::vector<Eigen::Vector2d>& points,
-                         const Measure& measure) {
-    std::vector<double> values;
-    values.reserve(points.size());
-    for (const Eigen::Vector2d& point : points) {
-      values.push_back(measure(point));
-    }
-    const auto at =
-        values.begin() + static_cast<int>(kSectionQuantile * values.size());
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  }
-
-  void Look(const Vector3d& point, const Vector3d& normal) {
-    const Vector3d local = rotation_.transpose() * (point - origin_);
-    const double along = local.x() / link_.length_m;
-    if (!(along >= 0 && along < 1)) return;
-    const Eigen::Vector2d across = local.tail<2>();
-    const double distance = across.norm();
-    const Eigen::Vector2d outwards = (rotation_.transpose() * normal).tail<2>();
-    if (outwards.dot(across) < kFacingCosine * distance) return;
-    const double turn =
-        std::atan2(across[1], across[0]) / (2 * std::numbers::pi) + 0.5;
-    const int direction =
-        std::min(static_cast<int>(kDirections * turn), kDirections - 1);
-    const int bin = kDirections * static_cast<int>(kSlices * along) + direction;
-    if (distance >= distances_[bin]) return;
-    distances_[bin] = distance;
-    nearest_[bin] = across;
-  }
-
-  const Eigen::Matrix3d& rotation_;
-  const Vector3d& origin_;
-  const SkinLink& link_;
-  std::array<Eigen::Vector2d, kBins> nearest_;
-  std::array<double, kBins> distances_;
 };
 
 bool AreNeighbours(const VolumeRig& rig, int a, int b) {
@@ -361,17 +292,6 @@ absl::StatusOr<SkinBinding> BindMesh(
   return binding;
 }
 
-std::shared_ptr<const VolumeRig> FitSections(const VolumeRig& rig,
-                                             const TriangleMesh& mesh) {
-  const std::vector<SurfacePoint> points = PointsOf(mesh, SpacingFor(rig));
-  std::vector<Eigen::Vector2d> half_extents;
-  half_extents.reserve(rig.link_count());
-  for (int i = 0; i < rig.link_count(); ++i) {
-    half_extents.push_back(SectionFitter(rig, i).Fit(points));
-  }
-  return rig.WithHalfExtents(half_extents);
-}
-
 BindingReport ReportOf(const VolumeRig& rig, const TriangleMesh& mesh,
                        const SkinBinding& binding) {
   BindingReport report;
@@ -382,7 +302,8 @@ BindingReport ReportOf(const VolumeRig& rig, const TriangleMesh& mesh,
     ++report.link_counts[vertex.link][k];
   }
   const int count = static_cast<int>(binding.vertices.size());
-  const MeshEdges edges = FindEdges(count, mesh.triangles);
+  const MeshEdges edges =
+      FindEdgesOfPlaces(mesh.triangles, FindPlaces(mesh.positions));
   for (int v = 0; v < count; ++v) {
     for (int other : edges.of(v)) {
       const int a = binding.vertices[v].link;

@@ -6,6 +6,7 @@
 // labels of unique vertices flow along the edges of the mesh, by geodesic
 // distance, into the ambiguous ones that they are candidates of. What the
 // method is not sure of stays flagged for a person to decide (see rebind.h).
+// Vertices at one place (see mesh_places.h) are one: they go together.
 //
 // Coordinates in the volumes give back the mesh exactly at the rest pose.
 //
@@ -29,7 +30,9 @@
 namespace gelenk {
 
 enum class BindingClass {
-  kUnique,     // one chain holds it
+  // One chain holds it; or none, but the surface leads to the one that is
+  // clearly the nearest.
+  kUnique,
   kAmbiguous,  // several do; see its candidates
   kOutside,    // none does: bound to the nearest
   kBlend,      // near a branch: in its stub, or its parent's, too
@@ -103,15 +106,11 @@ struct SkinBinding {
   }
 };
 
-// Binds `mesh`. Of two assignments of one vertex the later counts.
+// Binds `mesh`. Of two assignments of one vertex the later counts; those of a
+// vertex hold for all at its place that have none of their own.
 absl::StatusOr<SkinBinding> BindMesh(
     const VolumeRig& rig, const TriangleMesh& mesh,
     absl::Span<const VertexAssignment> assignments = {});
-
-// The same rig with sections that fit the mesh: a little more than the limbs
-// are thick (tight ones leave fewer vertices ambiguous).
-std::shared_ptr<const VolumeRig> FitSections(const VolumeRig& rig,
-                                             const TriangleMesh& mesh);
 
 // An edge whose ends lie on links that are not neighbours: it stretches as they
 // part.

@@ -260,6 +260,7 @@ class LinkDerivation {
     if (given && given->half_extents_m) {
       link.half_extents_m = *given->half_extents_m;
     }
+    link.cap_reach_m.setConstant(link.half_extents_m.maxCoeff());
     link_of_[joint] = static_cast<int>(links_.size());
     links_.push_back(std::move(link));
     next_.push_back(next);

@@ -37,6 +37,9 @@ struct SkinLink {
   // Half axes of the section's ellipse along s and t: how far the volume
   // reaches.
   Eigen::Vector2d half_extents_m = Eigen::Vector2d::Zero();
+  // How far the rigid caps hold vertices, before the start of a chain and
+  // beyond its end.
+  Eigen::Vector2d cap_reach_m = Eigen::Vector2d::Zero();
 };
 
 // What to do otherwise than the rest pose suggests, for one joint.

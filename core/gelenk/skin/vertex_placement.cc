@@ -63,17 +63,20 @@ bool VertexPlacer::InCap(const Vector3d& point, int link,
       local.x() > described.length_m && described.continuation < 0;
   if (!before && !beyond) return false;
   const Eigen::Vector2d& section = described.half_extents_m;
-  const double over = (before ? -local.x() : local.x() - described.length_m) /
-                      section.maxCoeff();
+  const double over_m = before ? -local.x() : local.x() - described.length_m;
+  const double reach_m = described.cap_reach_m[before ? 0 : 1];
   placement->link = link;
   placement->volume = rig_.volume(link, VolumePart::kRigid);
   placement->at = {local.x() / described.length_m, local.y(), local.z()};
   placement->radius =
-      std::hypot(over, local.y() / section[0], local.z() / section[1]);
+      std::max(over_m / reach_m,
+               std::hypot(local.y() / section[0], local.z() / section[1]));
+  // The bone of a long cap goes on to where its round end begins.
+  const double past_m =
+      std::clamp(over_m - reach_m + section.maxCoeff(), 0.0, over_m);
   placement->offset_m =
       rig_.rest().rotation(link) *
-      Vector3d(before ? local.x() : local.x() - described.length_m, local.y(),
-               local.z());
+      Vector3d(before ? -past_m : past_m, local.y(), local.z());
   return true;
 }
 
@@ -152,9 +155,11 @@ Placement VertexPlacer::InChain(const Vector3d& point, int chain) const {
 }
 
 // By how much a link may be farther than another and still hold a point: its
-// stub lies before the bone, its bent volumes beside it.
+// stub lies before the bone, its bent volumes beside it, its caps at the ends.
 double VertexPlacer::Slack(int link) const {
-  const double section = 2 * rig_.link(link).half_extents_m.maxCoeff();
+  const double section =
+      std::max(2 * rig_.link(link).half_extents_m.maxCoeff(),
+               rig_.link(link).cap_reach_m.maxCoeff());
   return rig_.is_branch(link) ? section + 3 * rig_.start_spacing_m(link)
                               : section;
 }

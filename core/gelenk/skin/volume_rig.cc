@@ -236,6 +236,16 @@ std::shared_ptr<const VolumeRig> VolumeRig::WithHalfExtents(
   return rig;
 }
 
+std::shared_ptr<const VolumeRig> VolumeRig::WithSections(
+    absl::Span<const LinkSection> sections) const {
+  auto rig = std::make_shared<VolumeRig>(*this);
+  for (int i = 0; i < link_count(); ++i) {
+    rig->links_[i].half_extents_m = sections[i].half_extents_m;
+    rig->links_[i].cap_reach_m = sections[i].cap_reach_m;
+  }
+  return rig;
+}
+
 int VolumeRig::FindLink(absl::string_view id) const {
   for (int i = 0; i < link_count(); ++i) {
     if (links_[i].id == id) return i;

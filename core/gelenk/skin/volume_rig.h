@@ -89,6 +89,12 @@ struct VolumeFold {
   double least_jacobian = 0;
 };
 
+// See SkinLink.
+struct LinkSection {
+  Eigen::Vector2d half_extents_m;
+  Eigen::Vector2d cap_reach_m;
+};
+
 class VolumeRig {
  public:
   // INVALID_ARGUMENT that lists every malformed override, muscle and fullness.
@@ -105,6 +111,8 @@ class VolumeRig {
   // bindings do not depend on them.
   std::shared_ptr<const VolumeRig> WithHalfExtents(
       absl::Span<const Eigen::Vector2d> half_extents_m) const;
+  std::shared_ptr<const VolumeRig> WithSections(
+      absl::Span<const LinkSection> sections) const;
 
   const Skeleton& skeleton() const { return *skeleton_; }
   const std::shared_ptr<const Skeleton>& shared_skeleton() const {

@@ -29,6 +29,19 @@ inline bool IsClosed(absl::Span<const Triangle> triangles) {
   return true;
 }
 
+// The same triangles, each with corners of its own.
+inline TriangleMesh TriangleSoup(const TriangleMesh& mesh) {
+  TriangleMesh soup;
+  for (const Triangle& triangle : mesh.triangles) {
+    const int first = static_cast<int>(soup.positions.size());
+    for (int corner : triangle) {
+      soup.positions.push_back(mesh.positions[corner]);
+    }
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
 inline std::vector<Eigen::Vector3d> PositionsOf(const Skin& skin,
                                                 const VertexBlocks& blocks) {
   std::vector<Eigen::Vector3d> positions;
