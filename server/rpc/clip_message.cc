@@ -1,5 +1,7 @@
 #include "server/rpc/clip_message.h"
 
+#include <optional>
+
 #include "absl/strings/str_format.h"
 #include "convert/pose.h"
 #include "gelenk/base/violations.h"
@@ -38,7 +40,8 @@ void ToProto(const StoredClip& stored, v1::Clip* proto) {
 absl::StatusOr<StoredClip> FindClip(const ServiceState& state,
                                     absl::string_view field,
                                     absl::string_view name) {
-  const absl::StatusOr<ClipName> parsed = ParseClipName(field, name);
+  const absl::StatusOr<RevisionedName> parsed =
+      ParseRevisionName(field, kClips, name);
   if (!parsed.ok()) return parsed.status();
   return state.clips.Find(kDefaultTenant, *parsed);
 }
@@ -60,6 +63,14 @@ absl::Status CheckFrameCount(absl::string_view field, const MotionClip& clip,
                              const Limits& limits) {
   return CheckFrameCount(field, clip.duration_s() / FrameTimeOf(clip) + 1,
                          *clip.skeleton(), limits);
+}
+
+bool AnswerEarlier(const ServiceState& state, absl::string_view request_id,
+                   v1::Clip* response) {
+  const std::optional<StoredClip> earlier =
+      state.clips.FindRequest(kDefaultTenant, request_id);
+  if (earlier) ToProto(*earlier, response);
+  return earlier.has_value();
 }
 
 absl::Status CheckNewClip(absl::string_view id_field, const std::string& id,

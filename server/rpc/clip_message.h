@@ -30,6 +30,10 @@ absl::Status CheckFrameCount(absl::string_view field, double frames,
 absl::Status CheckFrameCount(absl::string_view field, const MotionClip& clip,
                              const Limits& limits);
 
+// Fills `response` with what `request_id` made earlier, if that is still there.
+bool AnswerEarlier(const ServiceState& state, absl::string_view request_id,
+                   v1::Clip* response);
+
 // The id and request_id of a request that makes a clip.
 absl::Status CheckNewClip(absl::string_view id_field, const std::string& id,
                           const std::string& request_id);

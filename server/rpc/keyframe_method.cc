@@ -160,7 +160,8 @@ absl::StatusOr<MotionClip> ApplyAll(const ServiceState& state, MotionClip clip,
 absl::Status CheckRequest(const v1::EditKeyframesRequest& request) {
   Violations violations;
   violations.AddStatus("", CheckRequestId(request.request_id()));
-  violations.AddStatus("", ParseClipName("name", request.name()).status());
+  violations.AddStatus(
+      "", ParseRevisionName("name", kClips, request.name()).status());
   if (request.edits_size() > kMaxEdits) {
     violations.Add("edits", absl::StrCat("want at most ", kMaxEdits, ", got ",
                                          request.edits_size()));
@@ -174,9 +175,7 @@ absl::Status EditKeyframes(ServiceState& state,
                            const v1::EditKeyframesRequest& request,
                            v1::Clip* response) {
   if (absl::Status status = CheckRequest(request); !status.ok()) return status;
-  if (const auto earlier =
-          state.clips.FindRequest(kDefaultTenant, request.request_id())) {
-    ToProto(*earlier, response);
+  if (AnswerEarlier(state, request.request_id(), response)) {
     return absl::OkStatus();
   }
   while (true) {

@@ -18,7 +18,8 @@ absl::Status CheckRequest(const v1::ProcessClipRequest& request) {
   Violations violations;
   violations.AddStatus(
       "", CheckNewClip("clip_id", request.clip_id(), request.request_id()));
-  violations.AddStatus("", ParseClipName("clip", request.clip()).status());
+  violations.AddStatus(
+      "", ParseRevisionName("clip", kClips, request.clip()).status());
   if (request.steps_size() == 0 || request.steps_size() > kMaxSteps) {
     violations.Add("steps", absl::StrCat("want 1 to ", kMaxSteps, ", got ",
                                          request.steps_size()));
@@ -32,9 +33,7 @@ absl::Status ProcessClip(ServiceState& state,
                          const v1::ProcessClipRequest& request,
                          v1::Clip* response) {
   if (absl::Status status = CheckRequest(request); !status.ok()) return status;
-  if (const auto earlier =
-          state.clips.FindRequest(kDefaultTenant, request.request_id())) {
-    ToProto(*earlier, response);
+  if (AnswerEarlier(state, request.request_id(), response)) {
     return absl::OkStatus();
   }
   const absl::StatusOr<StoredClip> source =

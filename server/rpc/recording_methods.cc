@@ -83,9 +83,7 @@ absl::Status StopRecording(ServiceState& state,
       !status.ok()) {
     return status;
   }
-  if (const auto earlier =
-          state.clips.FindRequest(kDefaultTenant, request.request_id())) {
-    ToProto(*earlier, response);
+  if (AnswerEarlier(state, request.request_id(), response)) {
     return absl::OkStatus();
   }
   const auto session = FindSession(state, "session", request.session());

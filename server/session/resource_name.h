@@ -1,5 +1,5 @@
-// Names of resources: "skeletons/{id}", "sessions/{id}", "skins/{id}", unique
-// in a tenant.
+// Names of resources: "skeletons/{id}", "sessions/{id}", "clips/{id}",
+// "skins/{id}", unique in a tenant.
 #ifndef GELENK_SERVER_SESSION_RESOURCE_NAME_H_
 #define GELENK_SERVER_SESSION_RESOURCE_NAME_H_
 
@@ -20,6 +20,7 @@ using ResourceKey = std::pair<std::string, std::string>;
 
 inline constexpr absl::string_view kSkeletons = "skeletons";
 inline constexpr absl::string_view kSessions = "sessions";
+inline constexpr absl::string_view kClips = "clips";
 inline constexpr absl::string_view kSkins = "skins";
 
 // INVALID_ARGUMENT naming `field` unless `id` is [a-z][a-z0-9-]{3,62}.

@@ -1,5 +1,5 @@
-// Names of revisions: "skins/{id}" is the newest one, "skins/{id}@{revision}"
-// an older one, from 1.
+// Names of revisions, of clips and skins: "clips/{id}" is the newest one,
+// "clips/{id}@{revision}" a certain one, from 1.
 #ifndef GELENK_SERVER_SESSION_REVISION_NAME_H_
 #define GELENK_SERVER_SESSION_REVISION_NAME_H_
 

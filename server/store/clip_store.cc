@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "server/session/resource_name.h"
 
 namespace gelenk::server {
 
@@ -25,14 +26,14 @@ StoredClip ClipStore::WithRange(const Revisions& revisions, size_t index) {
 }
 
 absl::StatusOr<StoredClip> ClipStore::At(const Revisions& revisions,
-                                         const ClipName& name) {
+                                         const RevisionedName& name) {
   const int oldest = revisions.front().revision;
   const int newest = revisions.back().revision;
-  const int revision = name.revision.value_or(newest);
+  const int64_t revision = name.revision.value_or(newest);
   if (revision < oldest || revision > newest) {
     return absl::NotFoundError(
         absl::StrFormat("name: no %s, revisions %d to %d are kept",
-                        RevisionName(name.name, revision), oldest, newest));
+                        RevisionText(name.name, revision), oldest, newest));
   }
   return WithRange(revisions, revision - oldest);
 }
@@ -41,7 +42,8 @@ std::optional<StoredClip> ClipStore::FindRequestLocked(
     absl::string_view tenant, absl::string_view request_id) const {
   const std::string earlier = requests_.Find(tenant, request_id);
   if (earlier.empty()) return std::nullopt;
-  const ClipName name = ParseClipName("name", earlier).value();
+  const RevisionedName name =
+      ParseRevisionName("name", kClips, earlier).value();
   const auto found = clips_.find({std::string(tenant), name.name});
   if (found == clips_.end()) return std::nullopt;
   absl::StatusOr<StoredClip> clip = At(found->second, name);
@@ -94,7 +96,7 @@ absl::StatusOr<StoredClip> ClipStore::Create(absl::string_view tenant,
   if (absl::Status status = CheckRoomLocked(bytes); !status.ok()) return status;
   bytes_ += bytes;
   clip.revision = 1;
-  requests_.Add(tenant, request_id, RevisionName(clip.name, 1));
+  requests_.Add(tenant, request_id, RevisionText(clip.name, 1));
   Revisions& revisions = clips_[key];
   revisions.push_back(std::move(clip));
   return WithRange(revisions, 0);
@@ -128,13 +130,13 @@ absl::StatusOr<StoredClip> ClipStore::AddRevision(absl::string_view tenant,
   bytes_ = bytes_ + bytes - freed;
   if (full) revisions.pop_front();
   clip.revision = newest + 1;
-  requests_.Add(tenant, request_id, RevisionName(clip.name, clip.revision));
+  requests_.Add(tenant, request_id, RevisionText(clip.name, clip.revision));
   revisions.push_back(std::move(clip));
   return WithRange(revisions, revisions.size() - 1);
 }
 
 absl::StatusOr<StoredClip> ClipStore::Find(absl::string_view tenant,
-                                           const ClipName& name) const {
+                                           const RevisionedName& name) const {
   std::shared_lock<std::shared_mutex> lock(mutex_);
   const auto found = clips_.find({std::string(tenant), name.name});
   if (found == clips_.end()) return NoSuchResource(name.name);

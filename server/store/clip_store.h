@@ -23,7 +23,7 @@
 #include "gelenk/formats/bvh_import.h"
 #include "gelenk/motion/motion_clip.h"
 #include "server/session/request_log.h"
-#include "server/store/clip_name.h"
+#include "server/session/revision_name.h"
 #include "server/store/skeleton_store.h"
 
 namespace gelenk::server {
@@ -89,7 +89,7 @@ class ClipStore {
 
   // NOT_FOUND naming the clip, or the revisions that are kept.
   absl::StatusOr<StoredClip> Find(absl::string_view tenant,
-                                  const ClipName& name) const;
+                                  const RevisionedName& name) const;
   // With all revisions.
   absl::Status Delete(absl::string_view tenant, absl::string_view name);
 
@@ -109,7 +109,7 @@ class ClipStore {
 
   static StoredClip WithRange(const Revisions& revisions, size_t index);
   static absl::StatusOr<StoredClip> At(const Revisions& revisions,
-                                       const ClipName& name);
+                                       const RevisionedName& name);
   std::optional<StoredClip> FindRequestLocked(
       absl::string_view tenant, absl::string_view request_id) const
       ABSL_SHARED_LOCKS_REQUIRED(mutex_);

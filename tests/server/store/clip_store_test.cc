@@ -56,7 +56,8 @@ class ClipStoreTest : public ::testing::Test {
                               std::move(clip));
   }
   absl::StatusOr<StoredClip> Find(absl::string_view name) const {
-    return store_.Find(kDefaultTenant, ParseClipName("name", name).value());
+    return store_.Find(kDefaultTenant,
+                       ParseRevisionName("name", kClips, name).value());
   }
   static double Angle(const StoredClip& clip) {
     return clip.clip.track(0).values(0, 1);
@@ -123,7 +124,10 @@ TEST_F(ClipStoreTest, NamesAreTakenOnceInATenant) {
               Fails(absl::StatusCode::kAlreadyExists, "clips/turn exists"));
   EXPECT_THAT(store_.List(kTheirs, "", 9), IsEmpty());
   EXPECT_FALSE(
-      store_.Find(kTheirs, ParseClipName("name", "clips/turn").value()).ok());
+      store_
+          .Find(kTheirs,
+                ParseRevisionName("name", kClips, "clips/turn").value())
+          .ok());
 }
 
 TEST_F(ClipStoreTest, HoldsNoMoreThanItsBounds) {
@@ -157,7 +161,7 @@ TEST_F(ClipStoreTest, ListsTheNewestInOrderOfName) {
   ASSERT_TRUE(Revise("turn-a", 1, 2).ok());
   std::vector<std::string> names;
   for (const StoredClip& clip : store_.List(kDefaultTenant, "", 9)) {
-    names.push_back(RevisionName(clip.name, clip.revision));
+    names.push_back(RevisionText(clip.name, clip.revision));
   }
   EXPECT_THAT(names, ElementsAre("clips/turn-a@2", "clips/turn-b@1"));
   EXPECT_EQ(store_.List(kDefaultTenant, "clips/turn-a", 9).size(), 1u);
@@ -191,10 +195,12 @@ TEST_F(ClipStoreTest, NoClipWithoutItsSkeleton) {
 }
 
 TEST(ClipNameTest, ReadsNamesWithAndWithoutRevision) {
-  const ClipName plain = ParseClipName("name", "clips/walk").value();
+  const RevisionedName plain =
+      ParseRevisionName("name", kClips, "clips/walk").value();
   EXPECT_EQ(plain.name, "clips/walk");
   EXPECT_FALSE(plain.revision.has_value());
-  const ClipName third = ParseClipName("name", "clips/walk@3").value();
+  const RevisionedName third =
+      ParseRevisionName("name", kClips, "clips/walk@3").value();
   EXPECT_EQ(third.name, "clips/walk");
   EXPECT_EQ(third.revision, 3);
 }
@@ -202,9 +208,9 @@ TEST(ClipNameTest, ReadsNamesWithAndWithoutRevision) {
 TEST(ClipNameTest, RefusesWhatIsNone) {
   for (const char* name :
        {"", "walk", "clips/", "clips/walk@", "clips/walk@0", "clips/walk@-1",
-        "clips/walk@x", "clips/walk@1@2", "clips/walk@99999999999",
-        "skeletons/walk", "clips/Walk"}) {
-    EXPECT_THAT(ParseClipName("clip", name).status(),
+        "clips/walk@x", "clips/walk@1@2", "clips/walk@01",
+        "clips/walk@99999999999999999999", "skeletons/walk", "clips/Walk"}) {
+    EXPECT_THAT(ParseRevisionName("clip", kClips, name).status(),
                 Fails(absl::StatusCode::kInvalidArgument, "clip: "))
         << name;
   }
