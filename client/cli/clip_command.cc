@@ -36,6 +36,7 @@ struct ClipOptions {
   std::string path;
   MotionFileOptions motion;
   std::string reference_path;
+  std::string reference_animation;
   std::string out_path;
   std::string picture_path;
   double cutoff_hz = 6;
@@ -58,12 +59,12 @@ absl::Status RunInfo(const ClipOptions& options, std::string* output) {
 
 absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
   const absl::StatusOr<BodyFile> body =
-      ReadBodyFile(options.path, options.motion.unit_m);
+      ReadMovingBodyFile(options.path, options.motion);
   if (!body.ok()) return body.status();
   std::optional<BodyFile> reference;
   if (!options.reference_path.empty()) {
-    absl::StatusOr<BodyFile> read =
-        ReadBodyFile(options.reference_path, std::nullopt);
+    absl::StatusOr<BodyFile> read = ReadMovingBodyFile(
+        options.reference_path, {.animation = options.reference_animation});
     if (!read.ok()) return read.status();
     reference = *std::move(read);
   }
@@ -160,11 +161,9 @@ absl::Status RunProcess(const ClipOptions& options, std::string* output) {
 CLI::App* AddStep(CLI::App& clip, const std::string& name,
                   const std::string& description, ClipOptions* options) {
   CLI::App* step = clip.add_subcommand(name, description);
-  const bool is_measure = name == "measure";
   step->add_option(name == "blend" ? "A" : "FILE", options->path,
-                   is_measure ? "Motion capture (.bvh)"
-                              : "Motion capture (.bvh), or a model with an "
-                                "animation (.gltf, .glb)")
+                   "Motion capture (.bvh), or a model with an animation "
+                   "(.gltf, .glb)")
       ->required()
       ->option_text("");
   if (name == "blend") {
@@ -177,10 +176,7 @@ CLI::App* AddStep(CLI::App& clip, const std::string& name,
                    "glTF")
       ->check(Positive())
       ->option_text("M");
-  if (is_measure) return step;
-  step->add_option("--animation", options->motion.animation,
-                   "Which animation of a glTF file; default 0")
-      ->option_text("N");
+  AddAnimationOption(*step, "--animation", &options->motion.animation);
   return step;
 }
 
@@ -212,6 +208,8 @@ Command AddClipCommand(CLI::App& app) {
                    "The motion that FILE was made from: its contacts count, "
                    "and ratios are printed")
       ->option_text("SOURCE");
+  AddAnimationOption(*options->measure, "--reference-animation",
+                     &options->reference_animation);
   options->measure
       ->add_option("--picture", options->picture_path,
                    "The motion as figures over time, with its contacts")

@@ -21,7 +21,7 @@ namespace {
 
 struct RetargetCommandOptions {
   std::string path;
-  std::optional<double> unit_m;
+  MotionFileOptions motion;
   std::string onto;
   std::string out_path;
   std::string map_path;
@@ -57,7 +57,7 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
     map = *std::move(read);
   }
   const absl::StatusOr<BodyFile> source =
-      ReadBodyFile(options.path, options.unit_m, map.source);
+      ReadMovingBodyFile(options.path, options.motion, map.source);
   if (!source.ok()) return source.status();
   if (!source->has_motion()) {
     return absl::InvalidArgumentError(
@@ -173,7 +173,10 @@ Command AddRetargetCommand(CLI::App& app) {
   auto options = std::make_shared<RetargetCommandOptions>();
   CLI::App* retarget = app.add_subcommand(
       "retarget", "A clip's motion onto another body, feet planted");
-  retarget->add_option("FILE", options->path, "Motion capture (.bvh)")
+  retarget
+      ->add_option("FILE", options->path,
+                   "Motion capture (.bvh), or a model with an animation "
+                   "(.gltf, .glb)")
       ->required()
       ->option_text("");
   retarget->add_option("--onto", options->onto, kBody)
@@ -200,10 +203,12 @@ Command AddRetargetCommand(CLI::App& app) {
       ->needs(live)
       ->option_text("LOG");
   retarget
-      ->add_option("--unit", options->unit_m,
-                   "Metres per unit of FILE; default: guessed")
+      ->add_option("--unit", options->motion.unit_m,
+                   "Metres per unit of FILE; default: guessed of BVH, 1 of "
+                   "glTF")
       ->check(Positive())
       ->option_text("M");
+  AddAnimationOption(*retarget, "--animation", &options->motion.animation);
   retarget
       ->add_option("--picture", options->picture_path,
                    "Both motions as figures over time, with their contacts")

@@ -60,11 +60,7 @@ absl::StatusOr<SkeletonFile> FromGltf(const std::string& path,
   const absl::StatusOr<GltfImport> import = ImportGltf(*document, options);
   if (!import.ok()) return InFile(path, import.status());
   SkeletonFile file = Imported(path, import->skeleton, import->warnings);
-  for (const GltfHumanBone& bone : document->humanoid) {
-    const int joint = import->joint_of_node[bone.node];
-    if (joint < 0) continue;
-    file.joint_of_bone.emplace_back(bone.bone, file.skeleton->joint(joint).id);
-  }
+  file.joint_of_bone = JointsOfBones(*document, *import);
   return file;
 }
 
@@ -88,6 +84,17 @@ absl::StatusOr<SkeletonFile> FromJson(const std::string& path) {
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> JointsOfBones(
+    const GltfDocument& document, const GltfImport& import) {
+  std::vector<std::pair<std::string, std::string>> joints;
+  for (const GltfHumanBone& bone : document.humanoid) {
+    const int joint = import.joint_of_node[bone.node];
+    if (joint < 0) continue;
+    joints.emplace_back(bone.bone, import.skeleton->joint(joint).id);
+  }
+  return joints;
+}
 
 std::string BaseName(const std::string& path) {
   return std::filesystem::path(path).filename().string();

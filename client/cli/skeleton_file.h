@@ -10,6 +10,8 @@
 
 #include "absl/status/statusor.h"
 #include "client/cli/bvh_clip.h"
+#include "gelenk/import/gltf_document.h"
+#include "gelenk/import/gltf_import.h"
 #include "gelenk/skeleton/skeleton.h"
 #include "gelenk/v1/skeleton.pb.h"
 
@@ -32,6 +34,10 @@ struct SkeletonFile {
 absl::StatusOr<SkeletonFile> ReadSkeletonFile(
     const std::string& path, std::optional<double> unit_m,
     const std::optional<std::string>& skin = std::nullopt);
+
+// Which joints are a humanoid's bones, as a VRM file says; empty of others.
+std::vector<std::pair<std::string, std::string>> JointsOfBones(
+    const GltfDocument& document, const GltfImport& import);
 
 // The file's name without folders.
 std::string BaseName(const std::string& path);

@@ -365,7 +365,42 @@ TEST_F(CommandLineTest, ClipsTellWhatIsInThem) {
               HasSubstr("way of the root"));
   const Ending bad = Run({"clip", "info", "d.glb", "--animation", "1"});
   EXPECT_EQ(bad.exit_code, 1);
-  EXPECT_THAT(bad.err, HasSubstr("--animation: want 0 to 0, got 1"));
+  EXPECT_THAT(bad.err, HasSubstr("--animation: want 0 to 0 or one of \""));
+}
+
+TEST_F(CommandLineTest, AnAnimationMovesOtherBodies) {
+  ASSERT_EQ(Run({"clip", "convert", "walk.bvh", "--out", "d.glb"}).exit_code,
+            0);
+  const json model = RunJson({"clip", "info", "d.glb"});
+  const std::string name = model["animations"][0];
+  const json from_bvh =
+      RunJson({"retarget", "walk.bvh", "--onto", "humanoid", "--out", "a.bvh"});
+  for (const std::string& animation : {std::string("0"), name}) {
+    const json made = RunJson({"retarget", "d.glb", "--onto", "humanoid",
+                               "--out", "e.bvh", "--animation", animation});
+    EXPECT_EQ(made["frames"], kFrames);
+    // The file holds floats.
+    EXPECT_NEAR(made["skate_cm_s"].get<double>(),
+                from_bvh["skate_cm_s"].get<double>(), 0.1);
+    EXPECT_LE(made["penetration_max_m"].get<double>(), 1e-3);
+  }
+  EXPECT_EQ(Run({"retarget", "d.glb", "--onto", "walk.bvh", "--out", "e.bvh",
+                 "--live"})
+                .exit_code,
+            0);
+  const json walk = RunJson({"clip", "measure", "walk.bvh"});
+  const json measured = RunJson({"clip", "measure", "d.glb", "--reference",
+                                 "walk.bvh", "--animation", name});
+  EXPECT_NEAR(measured["jerk_m_s3"].get<double>(),
+              walk["jerk_m_s3"].get<double>(),
+              0.01 * walk["jerk_m_s3"].get<double>());
+  const Ending bad = Run({"retarget", "d.glb", "--onto", "humanoid", "--out",
+                          "f.bvh", "--animation", "run"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("got \"run\""));
+  EXPECT_FALSE(fs::exists(folder_ / "f.bvh"));
+  Write("still.gltf", gelenk::testing::BodyGltf());
+  EXPECT_EQ(Run({"clip", "measure", "still.gltf"}).exit_code, 1);
 }
 
 TEST_F(CommandLineTest, ClipsAreCutPlantedAndBlended) {

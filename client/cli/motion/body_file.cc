@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/cli/file_bytes.h"
+#include "gelenk/motion/clip_frames.h"
 #include "gelenk/retarget/floating_base.h"
 #include "gelenk/retarget/humanoid.h"
 
@@ -16,25 +17,47 @@ namespace {
 // A skeleton, from a file or bundled, with the motion that came with it.
 struct Source {
   std::shared_ptr<const Skeleton> skeleton;
-  std::optional<BvhClip> clip;
-  std::vector<std::pair<std::string, std::string>> joint_of_bone;
+  std::optional<BvhClip> clip = {};
+  std::vector<std::pair<std::string, std::string>> joint_of_bone = {};
+  Eigen::MatrixXd frames = {};
+  double frame_time_s = 0;
+  std::vector<std::string> warnings = {};
 };
 
 absl::StatusOr<Source> ReadSource(const std::string& path,
                                   std::optional<double> unit_m) {
   const std::vector<absl::string_view> bundled = BundledSkeletonNames();
   if (std::find(bundled.begin(), bundled.end(), path) != bundled.end()) {
-    return Source{BundledSkeleton(path).value(), std::nullopt, {}};
+    return Source{.skeleton = BundledSkeleton(path).value()};
   }
   absl::StatusOr<SkeletonFile> file = ReadSkeletonFile(path, unit_m);
   if (!file.ok()) return file.status();
-  Source source = {std::move(file->skeleton), std::move(file->clip),
-                   std::move(file->joint_of_bone)};
+  Source source{.skeleton = std::move(file->skeleton),
+                .clip = std::move(file->clip),
+                .joint_of_bone = std::move(file->joint_of_bone)};
+  if (source.clip) {
+    source.frames = source.clip->poses;
+    source.frame_time_s = source.clip->document.frame_time_s;
+  }
   if (absl::EndsWithIgnoreCase(path, ".urdf")) {
     auto floating = WithFloatingBase(source.skeleton);
     if (!floating.ok()) return InFile(path, floating.status());
     source.skeleton = *std::move(floating);
   }
+  return source;
+}
+
+absl::StatusOr<Source> ReadAnimation(const std::string& path,
+                                     const MotionFileOptions& options) {
+  absl::StatusOr<MotionFile> file = ReadMotionFile(path, options);
+  if (!file.ok()) return file.status();
+  Source source{.skeleton = file->clip.skeleton(),
+                .joint_of_bone = std::move(file->joint_of_bone),
+                .frame_time_s = FrameTimeOf(file->clip),
+                .warnings = std::move(file->warnings)};
+  absl::StatusOr<Eigen::MatrixXd> frames = FramesFromClip(file->clip);
+  if (!frames.ok()) return InFile(path, frames.status());
+  source.frames = *std::move(frames);
   return source;
 }
 
@@ -73,25 +96,45 @@ absl::StatusOr<std::vector<JointMapOverride>> EntriesFrom(
   return entries;
 }
 
+absl::StatusOr<BodyFile> BodyOf(const std::string& path,
+                                absl::StatusOr<Source> source,
+                                absl::Span<const JointMapOverride> overrides) {
+  if (!source.ok()) return source.status();
+  std::vector<JointMapOverride> roles = RolesOf(*source, overrides);
+  absl::StatusOr<MovingBody> body = MakeMovingBody(
+      source->skeleton, source->frames, source->frame_time_s, roles);
+  if (!body.ok()) return InFile(path, body.status());
+  BodyFile file{*std::move(body), BaseName(path), std::move(roles),
+                std::move(source->clip), nullptr};
+  file.notes.insert(file.notes.begin(), source->warnings.begin(),
+                    source->warnings.end());
+  if (file.has_motion()) {
+    file.frames =
+        std::make_shared<const Eigen::MatrixXd>(std::move(source->frames));
+  }
+  return file;
+}
+
 }  // namespace
 
 absl::StatusOr<BodyFile> ReadBodyFile(
     const std::string& path, std::optional<double> unit_m,
     absl::Span<const JointMapOverride> overrides) {
-  absl::StatusOr<Source> source = ReadSource(path, unit_m);
-  if (!source.ok()) return source.status();
-  Eigen::MatrixXd frames;
-  double frame_time_s = 0;
-  if (source->clip) {
-    frames = source->clip->poses;
-    frame_time_s = source->clip->document.frame_time_s;
+  return BodyOf(path, ReadSource(path, unit_m), overrides);
+}
+
+absl::StatusOr<BodyFile> ReadMovingBodyFile(
+    const std::string& path, const MotionFileOptions& options,
+    absl::Span<const JointMapOverride> overrides) {
+  if (absl::EndsWithIgnoreCase(path, ".gltf") ||
+      absl::EndsWithIgnoreCase(path, ".glb")) {
+    return BodyOf(path, ReadAnimation(path, options), overrides);
   }
-  std::vector<JointMapOverride> roles = RolesOf(*source, overrides);
-  absl::StatusOr<MovingBody> body =
-      MakeMovingBody(source->skeleton, std::move(frames), frame_time_s, roles);
-  if (!body.ok()) return InFile(path, body.status());
-  return BodyFile{*std::move(body), BaseName(path), std::move(roles),
-                  std::move(source->clip)};
+  if (!options.animation.empty()) {
+    return InFile(path, absl::InvalidArgumentError(
+                            "--animation: only glTF files have several"));
+  }
+  return ReadBodyFile(path, options.unit_m, overrides);
 }
 
 absl::StatusOr<MapFile> ReadMapFile(const std::string& path) {

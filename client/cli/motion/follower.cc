@@ -31,12 +31,12 @@ void SetSkeleton(const std::string& id, const Skeleton& skeleton,
 }
 
 void SetCalibration(const FollowedBody& body, v1::BodyCalibration& proto) {
-  if (body.clip == nullptr) return;
-  const Eigen::MatrixXd& poses = body.clip->poses;
+  if (body.frames == nullptr) return;
+  const Eigen::MatrixXd& poses = *body.frames;
   const Eigen::Index most = convert::kMaxCalibrationNumbers / poses.rows();
   const Eigen::Index size = std::min(most, poses.cols()) * poses.rows();
   proto.mutable_positions()->Assign(poses.data(), poses.data() + size);
-  proto.set_frame_time_s(body.clip->document.frame_time_s);
+  proto.set_frame_time_s(body.frame_time_s);
   proto.set_first_frame(body.first_frame);
 }
 
@@ -107,11 +107,11 @@ absl::StatusOr<Eigen::MatrixXd> Stream(client::SessionStream& stream,
 }  // namespace
 
 FollowedBody FollowedBodyOf(const BodyFile& file) {
-  FollowedBody body = {file.model->skeleton, file.roles, nullptr, 0};
-  if (file.clip && file.has_motion()) {
-    body.clip = &*file.clip;
+  FollowedBody body = {file.model->skeleton, file.roles, file.frames,
+                       file.frame_time_s, 0};
+  if (file.frames != nullptr) {
     body.first_frame =
-        static_cast<int>(file.clip->poses.cols() - file.positions.cols());
+        static_cast<int>(file.frames->cols() - file.positions.cols());
   }
   return body;
 }
@@ -124,8 +124,8 @@ client::SessionSpec FollowerSpec(const FollowedBody& source,
   v1::Retargeting* retargeting =
       spec.session.mutable_session()->mutable_retargeting();
   SetCalibration(source, *retargeting->mutable_source_calibration());
-  if (source.clip != nullptr) {
-    retargeting->set_frame_time_s(source.clip->document.frame_time_s);
+  if (source.frames != nullptr) {
+    retargeting->set_frame_time_s(source.frame_time_s);
   }
   return spec;
 }

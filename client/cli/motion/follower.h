@@ -23,8 +23,10 @@ struct FollowedBody {
   std::shared_ptr<const Skeleton> skeleton;
   // What is known of its joint map.
   std::vector<JointMapOverride> roles;
-  // Its motion, which tells how its rig is meant; may be null.
-  const BvhClip* clip = nullptr;
+  // Its motion, which tells how its rig is meant, a column a frame; may be
+  // null. Frames before the first are none of it.
+  std::shared_ptr<const Eigen::MatrixXd> frames = nullptr;
+  double frame_time_s = 0;
   int first_frame = 0;
 };
 FollowedBody FollowedBodyOf(const BodyFile& file);

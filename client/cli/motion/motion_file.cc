@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/cli/file_bytes.h"
 #include "client/cli/skeleton_file.h"
 #include "gelenk/formats/bvh_clip.h"
@@ -43,6 +45,27 @@ absl::StatusOr<MotionFile> ReadBvhMotion(const std::string& path,
   return motion;
 }
 
+// The index of the animation that `wanted` names; a name goes before a number.
+absl::StatusOr<int> FindAnimation(const std::vector<GltfAnimation>& animations,
+                                  const std::string& wanted) {
+  if (wanted.empty()) return 0;
+  const int count = static_cast<int>(animations.size());
+  for (int i = 0; i < count; ++i) {
+    if (animations[i].name == wanted) return i;
+  }
+  int index = -1;
+  if (absl::SimpleAtoi(wanted, &index) && index >= 0 && index < count) {
+    return index;
+  }
+  const std::string names = absl::StrJoin(
+      animations, ", ", [](std::string* text, const GltfAnimation& animation) {
+        absl::StrAppend(text, "\"", animation.name, "\"");
+      });
+  return absl::InvalidArgumentError(
+      absl::StrCat("--animation: want 0 to ", count - 1, " or one of ", names,
+                   ", got \"", wanted, "\""));
+}
+
 absl::StatusOr<MotionFile> ReadGltfMotion(const std::string& path,
                                           const MotionFileOptions& options) {
   const absl::StatusOr<std::string> bytes = ReadFile(path);
@@ -59,15 +82,11 @@ absl::StatusOr<MotionFile> ReadGltfMotion(const std::string& path,
     return InFile(path,
                   absl::InvalidArgumentError("the file has no animation"));
   }
-  const int count = static_cast<int>(animations->size());
-  const int index = options.animation;
-  if (index < 0 || index >= count) {
-    return InFile(path,
-                  absl::InvalidArgumentError(absl::StrCat(
-                      "--animation: want 0 to ", count - 1, ", got ", index)));
-  }
+  const absl::StatusOr<int> index =
+      FindAnimation(*animations, options.animation);
+  if (!index.ok()) return InFile(path, index.status());
   absl::StatusOr<GltfClip> clip =
-      ClipFromGltf((*animations)[index], *document, *import);
+      ClipFromGltf((*animations)[*index], *document, *import);
   if (!clip.ok()) return InFile(path, clip.status());
   MotionFile motion{.clip = std::move(clip->clip)};
   motion.unit_m = import->unit_m;
@@ -77,10 +96,18 @@ absl::StatusOr<MotionFile> ReadGltfMotion(const std::string& path,
   for (const GltfAnimation& animation : *animations) {
     motion.animation_names.push_back(animation.name);
   }
+  motion.joint_of_bone = JointsOfBones(*document, *import);
   return motion;
 }
 
 }  // namespace
+
+void AddAnimationOption(CLI::App& app, const std::string& name,
+                        std::string* animation) {
+  app.add_option(name, *animation,
+                 "Which animation of a glTF file, by name or index; default 0")
+      ->option_text("NAME|INDEX");
+}
 
 absl::StatusOr<MotionFile> ReadMotionFile(const std::string& path,
                                           const MotionFileOptions& options) {
@@ -92,7 +119,7 @@ absl::StatusOr<MotionFile> ReadMotionFile(const std::string& path,
     return InFile(
         path, absl::InvalidArgumentError("want a .bvh, .gltf or .glb file"));
   }
-  if (options.animation != 0) {
+  if (!options.animation.empty()) {
     return InFile(path, absl::InvalidArgumentError(
                             "--animation: a BVH file has only one motion"));
   }

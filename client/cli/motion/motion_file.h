@@ -2,8 +2,10 @@
 #ifndef CLIENT_CLI_MOTION_MOTION_FILE_H_
 #define CLIENT_CLI_MOTION_MOTION_FILE_H_
 
+#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -15,9 +17,13 @@ namespace gelenk::cli {
 struct MotionFileOptions {
   // Metres per unit; unset means guessed of BVH, 1 of glTF.
   std::optional<double> unit_m = std::nullopt;
-  // Of glTF.
-  int animation = 0;
+  // Of glTF, by name or by index; empty means the first.
+  std::string animation = {};
 };
+
+// --animation NAME|INDEX
+void AddAnimationOption(CLI::App& app, const std::string& name,
+                        std::string* animation);
 
 struct MotionFile {
   MotionClip clip;
@@ -26,12 +32,14 @@ struct MotionFile {
   double unit_m = 1;
   // Of glTF, in order; empty names as the file has them.
   std::vector<std::string> animation_names = {};
+  // Of a VRM file: which of its joints are the humanoid's bones, as it says.
+  std::vector<std::pair<std::string, std::string>> joint_of_bone = {};
   std::vector<std::string> warnings = {};
 };
 
 // Reads a .bvh, .gltf or .glb; buffers of a .gltf may be files in its folder.
-// Errors name the file; INVALID_ARGUMENT for one without motion or without that
-// animation.
+// Errors name the file; INVALID_ARGUMENT for one without motion, or without
+// that animation, naming those that there are.
 absl::StatusOr<MotionFile> ReadMotionFile(
     const std::string& path, const MotionFileOptions& options = {});
 
