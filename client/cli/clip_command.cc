@@ -15,8 +15,6 @@
 #include "client/cli/motion/motion_picture.h"
 #include "client/cli/motion/quality_text.h"
 #include "gelenk/motion/clip_cut.h"
-#include "gelenk/motion/clip_frames.h"
-#include "gelenk/motion/first_frame.h"
 #include "gelenk/motion/low_pass.h"
 #include "gelenk/motion/mirror.h"
 #include "gelenk/retarget/plant_feet.h"
@@ -58,7 +56,7 @@ absl::Status RunInfo(const ClipOptions& options, std::string* output) {
 }
 
 absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
-  const absl::StatusOr<BodyFile> body =
+  absl::StatusOr<BodyFile> body =
       ReadMovingBodyFile(options.path, options.motion);
   if (!body.ok()) return body.status();
   std::optional<BodyFile> reference;
@@ -67,6 +65,7 @@ absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
         options.reference_path, {.animation = options.reference_animation});
     if (!read.ok()) return read.status();
     reference = *std::move(read);
+    PairFrames(*body, *reference);
   }
   const absl::StatusOr<MeasuredMotion> measured =
       MeasureBody(*body, reference ? &*reference : nullptr);
@@ -76,27 +75,6 @@ absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
   if (options.picture_path.empty()) return absl::OkStatus();
   return WriteMotionPicture(*body, reference ? &*reference : nullptr,
                             options.picture_path);
-}
-
-std::string FramesLeftOutText(int count) {
-  if (count == 1) return "frame 0 is no part of the motion and left out";
-  return absl::StrCat("frames 0 to ", count - 1,
-                      " are no part of the motion and left out");
-}
-
-// What is no part of the motion would be smeared over it.
-absl::StatusOr<MotionClip> MotionAlone(const MotionClip& clip,
-                                       std::string* output) {
-  const absl::StatusOr<Eigen::MatrixXd> frames = FramesFromClip(clip);
-  if (!frames.ok()) return frames.status();
-  const int before = CountFramesBeforeMotion(*clip.skeleton(), *frames);
-  if (before == 0) return clip;
-  absl::StrAppend(output, FramesLeftOutText(before), "\n");
-  ClipProperties properties = clip.properties();
-  properties.frame_time_s = FrameTimeOf(clip);
-  return ClipFromFrames(clip.skeleton(),
-                        frames->rightCols(frames->cols() - before),
-                        std::move(properties));
 }
 
 absl::StatusOr<MotionClip> Planted(const MotionClip& clip,
@@ -121,9 +99,13 @@ absl::StatusOr<MotionClip> Processed(const ClipOptions& options,
                                      const MotionClip& clip,
                                      std::string* output) {
   if (options.smooth->parsed()) {
-    const absl::StatusOr<MotionClip> motion = MotionAlone(clip, output);
+    // What is no part of the motion would be smeared over it.
+    const absl::StatusOr<MotionPart> motion = CutToMotion(clip);
     if (!motion.ok()) return motion.status();
-    return LowPassClip(*motion, options.cutoff_hz);
+    if (motion->frames_before > 0) {
+      absl::StrAppend(output, LeftOutText(motion->frames_before), "\n");
+    }
+    return LowPassClip(motion->clip, options.cutoff_hz);
   }
   if (options.mirror->parsed()) {
     const absl::StatusOr<MirrorMap> map = FindMirrorMap(*clip.skeleton());

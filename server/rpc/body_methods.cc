@@ -22,7 +22,7 @@ absl::Status MeasureClip(const ServiceState& state,
                          v1::MeasureClipResponse* response) {
   absl::StatusOr<NamedMotion> motion = MotionOf(state, "clip", request.clip());
   if (!motion.ok()) return motion.status();
-  const auto body = BodyOf("clip", *std::move(motion));
+  auto body = BodyOf("clip", *std::move(motion));
   if (!body.ok()) return body.status();
   std::optional<MovingBody> reference;
   if (!request.reference_clip().empty()) {
@@ -33,6 +33,7 @@ absl::Status MeasureClip(const ServiceState& state,
         BodyOf("reference_clip", *std::move(source));
     if (!read.ok()) return read.status();
     reference = *std::move(read);
+    PairFrames(*body, *reference);
   }
   const absl::StatusOr<MeasuredMotion> measured =
       MeasureBody(*body, reference ? &*reference : nullptr);

@@ -63,7 +63,14 @@ struct StepContext {
 };
 
 Made Apply(const StepContext& context, const v1::LowPass& step) {
-  return LowPassClip(context.clip(), step.cutoff_hz());
+  // What is no part of the motion would be smeared over it.
+  const absl::StatusOr<MotionPart> motion = CutToMotion(context.clip());
+  if (!motion.ok()) return motion.status();
+  Made made = LowPassClip(motion->clip, step.cutoff_hz());
+  if (made.ok() && motion->frames_before > 0) {
+    context.stored.warnings.push_back(LeftOutText(motion->frames_before));
+  }
+  return made;
 }
 
 Made Apply(const StepContext& context, const v1::RejectOutliers& step) {

@@ -6,11 +6,32 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "gelenk/retarget/humanoid.h"
+#include "server/session/resource_name.h"
 
 namespace gelenk::server {
+namespace {
+
+std::map<std::string, StoredSkeleton, std::less<>> BundledSkeletons() {
+  std::map<std::string, StoredSkeleton, std::less<>> bundled;
+  for (absl::string_view id : BundledSkeletonNames()) {
+    StoredSkeleton stored;
+    stored.name = ResourceName(kSkeletons, id);
+    stored.display_name = std::string(id);
+    stored.create_time = absl::UnixEpoch();
+    stored.skeleton = BundledSkeleton(id).value();
+    stored.trees = std::make_shared<SharedTrees>(stored.skeleton);
+    bundled.emplace(stored.name, std::move(stored));
+  }
+  return bundled;
+}
+
+}  // namespace
 
 SkeletonStore::SkeletonStore(Bounds bounds, std::function<uint64_t()> random)
-    : bounds_(bounds), random_(std::move(random)) {}
+    : bounds_(bounds),
+      random_(std::move(random)),
+      bundled_(BundledSkeletons()) {}
 
 absl::StatusOr<StoredSkeleton> SkeletonStore::Create(
     absl::string_view tenant, absl::string_view id,
@@ -25,7 +46,7 @@ absl::StatusOr<StoredSkeleton> SkeletonStore::Create(
       ResourceName(kSkeletons, id.empty() ? MakeResourceId("k", random_())
                                           : std::string(id));
   const ResourceKey key(tenant, skeleton.name);
-  if (skeletons_.contains(key)) {
+  if (skeletons_.contains(key) || bundled_.contains(skeleton.name)) {
     return absl::AlreadyExistsError(
         absl::StrCat("skeleton_id: ", skeleton.name, " exists"));
   }
@@ -44,6 +65,9 @@ absl::StatusOr<StoredSkeleton> SkeletonStore::Create(
 
 absl::StatusOr<StoredSkeleton> SkeletonStore::Find(
     absl::string_view tenant, absl::string_view name) const {
+  if (const auto bundled = bundled_.find(name); bundled != bundled_.end()) {
+    return bundled->second;
+  }
   std::shared_lock<std::shared_mutex> lock(mutex_);
   const auto found = skeletons_.find({std::string(tenant), std::string(name)});
   if (found == skeletons_.end()) return NoSuchResource(name);
@@ -52,6 +76,10 @@ absl::StatusOr<StoredSkeleton> SkeletonStore::Find(
 
 absl::Status SkeletonStore::Delete(absl::string_view tenant,
                                    absl::string_view name) {
+  if (bundled_.contains(name)) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("name: ", name, " comes with the server and stays"));
+  }
   std::lock_guard<std::shared_mutex> lock(mutex_);
   const auto found = skeletons_.find({std::string(tenant), std::string(name)});
   if (found == skeletons_.end()) return NoSuchResource(name);

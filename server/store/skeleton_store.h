@@ -1,6 +1,8 @@
 // The skeletons of all tenants: immutable, shared by the sessions on them.
 //
-// In memory; a restart forgets them. Thread-safe.
+// In memory; a restart forgets them. Those that come with the library, as
+// "skeletons/humanoid", are there for every tenant, count against no bound, are
+// not listed, and stay. Thread-safe.
 #ifndef GELENK_SERVER_STORE_SKELETON_STORE_H_
 #define GELENK_SERVER_STORE_SKELETON_STORE_H_
 
@@ -43,7 +45,7 @@ class SkeletonStore {
 
   // Keeps `skeleton` under `id` (checked), or one of its own when empty; fills
   // its name. A repeated `request_id` answers what the first one made.
-  // ALREADY_EXISTS, RESOURCE_EXHAUSTED.
+  // ALREADY_EXISTS (bundled ones, too), RESOURCE_EXHAUSTED.
   absl::StatusOr<StoredSkeleton> Create(absl::string_view tenant,
                                         absl::string_view id,
                                         absl::string_view request_id,
@@ -51,6 +53,7 @@ class SkeletonStore {
 
   absl::StatusOr<StoredSkeleton> Find(absl::string_view tenant,
                                       absl::string_view name) const;
+  // FAILED_PRECONDITION for a bundled one.
   absl::Status Delete(absl::string_view tenant, absl::string_view name);
 
   // In order of name, the first `limit` after `after`.
@@ -60,6 +63,8 @@ class SkeletonStore {
  private:
   const Bounds bounds_;
   const std::function<uint64_t()> random_;
+  // By name.
+  const std::map<std::string, StoredSkeleton, std::less<>> bundled_;
   mutable std::shared_mutex mutex_;
   std::map<ResourceKey, StoredSkeleton> skeletons_ ABSL_GUARDED_BY(mutex_);
   size_t bytes_ ABSL_GUARDED_BY(mutex_) = 0;

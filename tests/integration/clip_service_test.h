@@ -37,6 +37,14 @@ class ClipServiceTest : public ServiceTest {
     return Call(&Stub::CreateClip, request);
   }
 
+  // A walk behind a T-pose that is no part of it.
+  static absl::StatusOr<v1::Clip> CreateWalkBehindATPose(int frames) {
+    v1::CreateClipRequest request;
+    request.mutable_file()->set_format(v1::CLIP_FORMAT_BVH);
+    request.mutable_file()->set_data(testing::WalkingBvhBehindATPose(frames));
+    return Call(&Stub::CreateClip, request);
+  }
+
   // An empty clip of the planar arm.
   static absl::StatusOr<v1::Clip> CreateStill() {
     v1::CreateClipRequest request;

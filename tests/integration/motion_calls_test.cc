@@ -13,6 +13,7 @@
 namespace gelenk {
 namespace {
 
+using ::testing::Contains;
 using testing::Fails;
 using ::testing::HasSubstr;
 
@@ -83,6 +84,26 @@ TEST_F(MotionCallsTest, StepsAreDoneInOrder) {
   // The form of the file goes with it.
   EXPECT_THAT(Export(made->name(), v1::CLIP_FORMAT_BVH).data,
               HasSubstr("ROOT Hips"));
+}
+
+// A recording behind a T-pose, as conversions leave it.
+TEST_F(MotionCallsTest, AFilterLeavesOutWhatIsNoPartOfTheMotion) {
+  const auto raw = CreateWalkBehindATPose(60);
+  ASSERT_TRUE(raw.ok()) << raw.status();
+  v1::ProcessClipRequest request = Process(*raw);
+  request.add_steps()->mutable_low_pass()->set_cutoff_hz(6);
+  const auto smooth = Call(&Stub::ProcessClip, request);
+  ASSERT_TRUE(smooth.ok()) << smooth.status();
+  EXPECT_NEAR(smooth->duration_s(), raw->duration_s() - raw->frame_time_s(),
+              1e-9);
+  EXPECT_THAT(smooth->warnings(),
+              Contains(HasSubstr("frame 0 is no part of the motion")));
+  v1::MeasureClipRequest measure;
+  measure.set_clip(smooth->name());
+  measure.set_reference_clip(raw->name());
+  const auto measured = Call(&Stub::MeasureClip, measure);
+  ASSERT_TRUE(measured.ok()) << measured.status();
+  EXPECT_LE(measured->comparison().jerk_ratio(), 1);
 }
 
 TEST_F(MotionCallsTest, LayersAndDifferencesGiveAMotionBack) {
@@ -245,6 +266,21 @@ TEST_F(MotionCallsTest, AWalkMovesAnotherBody) {
   request.mutable_target()->set_skeleton("skeletons/planar-arm");
   EXPECT_THAT(Call(&Stub::RetargetClip, request).status(),
               Fails(absl::StatusCode::kFailedPrecondition, "target"));
+}
+
+TEST_F(MotionCallsTest, TheBundledHumanoidIsATarget) {
+  v1::RetargetClipRequest request;
+  request.set_clip(Walk().name());
+  request.mutable_target()->set_skeleton("skeletons/humanoid");
+  const auto made = Call(&Stub::RetargetClip, request);
+  ASSERT_TRUE(made.ok()) << made.status();
+  EXPECT_EQ(made->skeleton(), "skeletons/humanoid");
+  v1::MeasureClipRequest measure;
+  measure.set_clip(made->name());
+  measure.set_reference_clip(request.clip());
+  const auto measured = Call(&Stub::MeasureClip, measure);
+  ASSERT_TRUE(measured.ok()) << measured.status();
+  EXPECT_LE(measured->quality().max_penetration_m(), 1e-3);
 }
 
 TEST_F(MotionCallsTest, PlaysEveryFrameAsFastAsRead) {

@@ -98,19 +98,39 @@ Limb Body() {
 
 }  // namespace
 
-std::string WalkingBvh(int frame_count) {
+namespace {
+
+std::string RowAt(double time_s) {
+  const double phase = 2 * std::numbers::pi * kStepsPerSecond * time_s;
+  return absl::StrCat(2 * std::sin(phase), " ", 92 + 1.5 * std::cos(2 * phase),
+                      " ", 110 * time_s, " ", absl::StrJoin(Angles(phase), " "),
+                      "\n");
+}
+
+std::string TextWith(const std::vector<std::string>& rows) {
   std::string text = "HIERARCHY\n";
   Append(Body(), "ROOT", text);
-  absl::StrAppend(&text, "MOTION\nFrames: ", frame_count,
-                  "\nFrame Time: ", kFrameTimeS, "\n");
-  for (int frame = 0; frame < frame_count; ++frame) {
-    const double time_s = frame * kFrameTimeS;
-    const double phase = 2 * std::numbers::pi * kStepsPerSecond * time_s;
-    absl::StrAppend(&text, 2 * std::sin(phase), " ",
-                    92 + 1.5 * std::cos(2 * phase), " ", 110 * time_s, " ",
-                    absl::StrJoin(Angles(phase), " "), "\n");
-  }
+  absl::StrAppend(&text, "MOTION\nFrames: ", rows.size(),
+                  "\nFrame Time: ", kFrameTimeS, "\n", absl::StrJoin(rows, ""));
   return text;
+}
+
+std::vector<std::string> Rows(int frame_count) {
+  std::vector<std::string> rows;
+  for (int i = 0; i < frame_count; ++i) rows.push_back(RowAt(i * kFrameTimeS));
+  return rows;
+}
+
+}  // namespace
+
+std::string WalkingBvh(int frame_count) { return TextWith(Rows(frame_count)); }
+
+std::string WalkingBvhBehindATPose(int frame_count) {
+  std::vector<std::string> rows = Rows(frame_count);
+  const std::vector<double> still(3 * kWalkingJointCount, 0);
+  rows.insert(rows.begin(),
+              absl::StrCat("0 93.5 0 ", absl::StrJoin(still, " "), "\n"));
+  return TextWith(rows);
 }
 
 }  // namespace gelenk::testing

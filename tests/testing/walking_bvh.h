@@ -11,6 +11,9 @@ namespace gelenk::testing {
 // The first frame is part of the motion.
 std::string WalkingBvh(int frame_count);
 
+// The same behind a frame that is none of it: its arms stretched out to a T.
+std::string WalkingBvhBehindATPose(int frame_count);
+
 inline constexpr int kWalkingJointCount = 17;
 inline constexpr int kWalkingEndSiteCount = 5;
 

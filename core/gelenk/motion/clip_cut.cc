@@ -8,6 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "gelenk/base/violations.h"
 #include "gelenk/motion/clip_frames.h"
+#include "gelenk/motion/first_frame.h"
 #include "gelenk/motion/sampler.h"
 
 namespace gelenk {
@@ -95,6 +96,29 @@ absl::StatusOr<MotionClip> CropClip(const MotionClip& clip, double start_s,
   properties.seam_s.reset();
   return MotionClip::Create(clip.skeleton(), std::move(tracks),
                             std::move(properties));
+}
+
+absl::StatusOr<MotionPart> CutToMotion(const MotionClip& clip) {
+  const absl::StatusOr<Eigen::MatrixXd> frames = FramesFromClip(clip);
+  if (!frames.ok()) return frames.status();
+  const int before = CountFramesBeforeMotion(*clip.skeleton(), *frames);
+  if (before == 0) return MotionPart{clip};
+  ClipProperties properties = clip.properties();
+  properties.frame_time_s = FrameTimeOf(clip);
+  absl::StatusOr<MotionClip> motion = ClipFromFrames(
+      clip.skeleton(), frames->rightCols(frames->cols() - before),
+      std::move(properties));
+  if (!motion.ok()) return motion.status();
+  return MotionPart{*std::move(motion), before};
+}
+
+std::string LeftOutText(int frames_before) {
+  if (frames_before == 0) return "";
+  if (frames_before == 1) {
+    return "frame 0 is no part of the motion and left out";
+  }
+  return absl::StrCat("frames 0 to ", frames_before - 1,
+                      " are no part of the motion and left out");
 }
 
 absl::StatusOr<MotionClip> ResampleClip(const MotionClip& clip,

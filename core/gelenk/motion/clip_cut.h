@@ -2,6 +2,7 @@
 #ifndef GELENK_MOTION_CLIP_CUT_H_
 #define GELENK_MOTION_CLIP_CUT_H_
 
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -14,6 +15,18 @@ namespace gelenk {
 // become frames at the clip's frame time. It is no cycle any more.
 absl::StatusOr<MotionClip> CropClip(const MotionClip& clip, double start_s,
                                     double end_s);
+
+// The clip without what comes before its motion: see CountFramesBeforeMotion.
+// With nothing before, the clip as it is; else frames at its frame time.
+struct MotionPart {
+  MotionClip clip;
+  // Frames that were left out.
+  int frames_before = 0;
+};
+absl::StatusOr<MotionPart> CutToMotion(const MotionClip& clip);
+
+// What people should know of it; empty where nothing was left out.
+std::string LeftOutText(int frames_before);
 
 // As frames of another rate; the end is cut to whole frames.
 absl::StatusOr<MotionClip> ResampleClip(const MotionClip& clip,

@@ -1,5 +1,6 @@
 #include "gelenk/retarget/moving_body.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -14,6 +15,22 @@ namespace {
 // The time steps of a motion and of the one it was made from differ by rounding
 // of the file at most.
 constexpr double kFrameTimeSlack = 1e-3;
+
+// Cuts `longer` where it has more frames at its start than `shorter` because
+// that one left them out: as a filter does with the way out of a first frame,
+// or as frame 0 was taken for no motion in one of the two only.
+void CutToPair(MovingBody& longer, const MovingBody& shorter) {
+  const Eigen::Index frames = shorter.positions.cols();
+  const Eigen::Index extra = longer.positions.cols() - frames;
+  if (frames == 0 || extra <= 0 ||
+      (extra != longer.way_frames && extra != shorter.left_out)) {
+    return;
+  }
+  longer.positions = Eigen::MatrixXd(longer.positions.rightCols(frames));
+  longer.notes.push_back(absl::StrCat(
+      extra, extra == 1 ? " frame" : " frames",
+      " at the start left out: the other motion does not have them"));
+}
 
 absl::StatusOr<Eigen::MatrixXd> RetargetFrames(
     const MovingBody& source, std::shared_ptr<const BodyModel> target,
@@ -43,6 +60,9 @@ absl::StatusOr<MovingBody> MakeMovingBody(
   if (frames.cols() > 0) {
     first = FindFirstFrameJump(*skeleton, frames).has_value() ? 1 : 0;
     body.frame_time_s = frame_time_s;
+    body.left_out = first;
+    body.way_frames =
+        std::max(0, CountFramesBeforeMotion(*skeleton, frames) - first);
     view.emplace(ClipView{frames, frame_time_s, first});
   }
   const ClipView* clip = view ? &*view : nullptr;
@@ -80,6 +100,11 @@ ContactLabels ContactsOf(const MovingBody& body,
                          absl::Span<const BodyPose> poses) {
   return LabelContacts(FootPointsOf(poses), body.frame_time_s,
                        FeetOf(*body.model));
+}
+
+void PairFrames(MovingBody& body, MovingBody& reference) {
+  CutToPair(body, reference);
+  CutToPair(reference, body);
 }
 
 absl::StatusOr<MeasuredMotion> MeasureBody(const MovingBody& body,

@@ -26,6 +26,10 @@ struct MovingBody {
   // part of the motion is left out.
   Eigen::MatrixXd positions;
   double frame_time_s = 0;
+  // Frames that were left out at the start, and how many more, of the way out
+  // of them, a filter leaves out: see CountFramesBeforeMotion.
+  int left_out = 0;
+  int way_frames = 0;
   // What people should know: roles that are missing, what was left out, what
   // was found out about the rig.
   std::vector<std::string> notes;
@@ -48,6 +52,12 @@ std::vector<BodyPose> BodyPosesOf(const BodyModel& model,
 ContactLabels ContactsOf(const MovingBody& body,
                          absl::Span<const BodyPose> poses);
 
+// Makes two motions, one made from the other, begin at the same frame: where
+// one has more frames because the other lacks some at the start that are no
+// part of the motion, they go, and a note says how many. Other differences
+// stay.
+void PairFrames(MovingBody& body, MovingBody& reference);
+
 struct MeasuredMotion {
   MotionQuality quality;
   // Beside the motion that it was made from.
@@ -55,9 +65,9 @@ struct MeasuredMotion {
   std::optional<MotionComparison> comparison;
 };
 
-// With a `reference` (may be null), its contacts count and the ground is flat,
-// at height 0. INVALID_ARGUMENT without motion, or where the reference has not
-// as many frames of the same time. Cost: linear.
+// With a `reference` (may be null), paired, its contacts count and the ground
+// is flat, at height 0. INVALID_ARGUMENT without motion, or where the reference
+// has not as many frames of the same time. Cost: linear.
 absl::StatusOr<MeasuredMotion> MeasureBody(const MovingBody& body,
                                            const MovingBody* reference);
 

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 #include "gelenk/formats/bvh_clip.h"
 #include "gelenk/formats/bvh_reader.h"
@@ -18,6 +20,7 @@ namespace gelenk {
 namespace {
 
 using testing::Fails;
+using ::testing::HasSubstr;
 
 MotionClip Walk() {
   const BvhDocument document = ReadBvh(testing::WalkingBvh(120)).value();
@@ -87,6 +90,58 @@ TEST(MovingBodyTest, OtherFrameCountsAreNotCompared) {
   shorter.positions.resize(walk.positions.rows(), 0);
   EXPECT_THAT(MeasureBody(shorter, nullptr).status(),
               Fails(absl::StatusCode::kInvalidArgument, "no motion"));
+}
+
+// The walk behind two frames that are none of it, as a conversion leaves them
+// that has smoothed the jump out of a rest pose.
+Eigen::MatrixXd FramesBehindARestPose(const MotionClip& clip) {
+  const Eigen::MatrixXd walk = FramesFromClip(clip).value();
+  Eigen::MatrixXd frames(walk.rows(), walk.cols() + 2);
+  frames.rightCols(walk.cols()) = walk;
+  // An arm that hangs in the walk, raised to the side and on its way down.
+  const int arm = clip.skeleton()->FindJoint("LeftArm");
+  const int offset = clip.skeleton()->span(arm).quaternion_offset;
+  const Eigen::Quaterniond hanging(frames.col(1).segment<4>(offset));
+  for (int f : {0, 1}) {
+    const Eigen::AngleAxisd raised((2 - f) * std::numbers::pi / 4,
+                                   Eigen::Vector3d::UnitZ());
+    frames.col(f) = walk.col(0);
+    frames.col(f).segment<4>(offset) = (hanging * raised).coeffs();
+  }
+  return frames;
+}
+
+TEST(MovingBodyTest, FramesBeforeTheMotionArePairedAsAFilterLeavesThemOut) {
+  const MotionClip walk = Walk();
+  MovingBody raw = MakeMovingBody(walk.skeleton(), FramesBehindARestPose(walk),
+                                  FrameTimeOf(walk))
+                       .value();
+  EXPECT_EQ(raw.left_out, 1);
+  EXPECT_EQ(raw.way_frames, 1);
+  // As a filter writes it: the walk alone.
+  MovingBody filtered = BodyOf(walk);
+  ASSERT_FALSE(MeasureBody(filtered, &raw).ok());
+  for (bool filtered_first : {true, false}) {
+    MovingBody longer = raw;
+    MovingBody shorter = filtered;
+    if (filtered_first) {
+      PairFrames(shorter, longer);
+    } else {
+      PairFrames(longer, shorter);
+    }
+    EXPECT_EQ(longer.positions, shorter.positions);
+    EXPECT_THAT(longer.notes.back(), HasSubstr("1 frame at the start"));
+    EXPECT_TRUE(MeasureBody(shorter, &longer).ok());
+  }
+}
+
+TEST(MovingBodyTest, OtherDifferencesAreNotPaired) {
+  MovingBody walk = BodyOf(Walk());
+  MovingBody shorter = walk;
+  shorter.positions = Eigen::MatrixXd(walk.positions.leftCols(119));
+  PairFrames(shorter, walk);
+  EXPECT_EQ(walk.positions.cols(), 120);
+  EXPECT_FALSE(MeasureBody(shorter, &walk).ok());
 }
 
 TEST(MovingBodyTest, AWalkOntoItselfStaysAWalk) {

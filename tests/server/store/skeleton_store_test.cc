@@ -159,5 +159,19 @@ TEST_F(SkeletonStoreTest, TenantsDoNotSeeEachOther) {
   EXPECT_THAT(Names("", 9), ElementsAre("skeletons/panda"));
 }
 
+TEST_F(SkeletonStoreTest, BundledSkeletonsAreThereForEverybodyAndStay) {
+  const auto ours = store_.Find(kDefaultTenant, "skeletons/humanoid");
+  ASSERT_TRUE(ours.ok()) << ours.status();
+  EXPECT_EQ(ours->skeleton->joint_count(), 22);
+  EXPECT_EQ(store_.Find(kTheirs, "skeletons/humanoid")->skeleton,
+            ours->skeleton);
+  EXPECT_EQ(Create("humanoid").status().code(),
+            absl::StatusCode::kAlreadyExists);
+  EXPECT_EQ(store_.Delete(kDefaultTenant, "skeletons/humanoid").code(),
+            absl::StatusCode::kFailedPrecondition);
+  EXPECT_TRUE(store_.Find(kDefaultTenant, "skeletons/humanoid").ok());
+  EXPECT_THAT(Names("", 10), IsEmpty());
+}
+
 }  // namespace
 }  // namespace gelenk::server
