@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/command.h"
@@ -10,10 +11,12 @@
 #include "client/cli/motion/body_file.h"
 #include "client/cli/motion/clip_blend.h"
 #include "client/cli/motion/clip_info.h"
+#include "client/cli/motion/clip_options.h"
 #include "client/cli/motion/clip_writer.h"
 #include "client/cli/motion/motion_file.h"
 #include "client/cli/motion/motion_picture.h"
 #include "client/cli/motion/quality_text.h"
+#include "client/cli/motion/served_clips.h"
 #include "gelenk/motion/clip_cut.h"
 #include "gelenk/motion/low_pass.h"
 #include "gelenk/motion/mirror.h"
@@ -22,30 +25,6 @@
 namespace gelenk::cli {
 namespace {
 
-struct ClipOptions {
-  CLI::App* info = nullptr;
-  CLI::App* measure = nullptr;
-  CLI::App* smooth = nullptr;
-  CLI::App* mirror = nullptr;
-  CLI::App* plant = nullptr;
-  CLI::App* crop = nullptr;
-  CLI::App* resample = nullptr;
-  CLI::App* blend = nullptr;
-  std::string path;
-  MotionFileOptions motion;
-  std::string reference_path;
-  std::string reference_animation;
-  std::string out_path;
-  std::string picture_path;
-  double cutoff_hz = 6;
-  double start_s = 0;
-  std::optional<double> end_s;
-  double rate_hz = 0;
-  std::string second_path;
-  BlendOptions blending;
-  Format format = Format::kTable;
-};
-
 absl::Status RunInfo(const ClipOptions& options, std::string* output) {
   const absl::StatusOr<MotionFile> file =
       ReadMotionFile(options.path, options.motion);
@@ -53,6 +32,11 @@ absl::Status RunInfo(const ClipOptions& options, std::string* output) {
   *output += options.format == Format::kJson ? JsonText(ClipInfoJson(*file))
                                              : ClipInfoText(*file);
   return absl::OkStatus();
+}
+
+std::string MeasuredOutput(const MeasuredMotion& measured, Format format) {
+  return format == Format::kJson ? JsonText(MeasuredJson(measured))
+                                 : MeasuredText(measured);
 }
 
 absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
@@ -70,8 +54,7 @@ absl::Status RunMeasure(const ClipOptions& options, std::string* output) {
   const absl::StatusOr<MeasuredMotion> measured =
       MeasureBody(*body, reference ? &*reference : nullptr);
   if (!measured.ok()) return InFile(options.path, measured.status());
-  *output += options.format == Format::kJson ? JsonText(MeasuredJson(*measured))
-                                             : MeasuredText(*measured);
+  *output += MeasuredOutput(*measured, options.format);
   if (options.picture_path.empty()) return absl::OkStatus();
   return WriteMotionPicture(*body, reference ? &*reference : nullptr,
                             options.picture_path);
@@ -140,36 +123,67 @@ absl::Status RunProcess(const ClipOptions& options, std::string* output) {
   return absl::OkStatus();
 }
 
-CLI::App* AddStep(CLI::App& clip, const std::string& name,
-                  const std::string& description, ClipOptions* options) {
-  CLI::App* step = clip.add_subcommand(name, description);
-  step->add_option(name == "blend" ? "A" : "FILE", options->path,
-                   "Motion capture (.bvh), or a model with an animation "
-                   "(.gltf, .glb)")
-      ->required()
-      ->option_text("");
-  if (name == "blend") {
-    step->add_option("B", options->second_path, "Motion of the same skeleton")
-        ->required()
-        ->option_text("");
+// The same by a service.
+absl::Status RunServedMeasure(const ClipOptions& options,
+                              const std::string& server, std::string* output) {
+  const auto clips = ServedClips::Open(server);
+  if (!clips.ok()) return clips.status();
+  const auto clip = (*clips)->Upload(options.path, options.motion);
+  if (!clip.ok()) return clip.status();
+  absl::StatusOr<v1::Clip> reference = v1::Clip();
+  if (!options.reference_path.empty()) {
+    reference = (*clips)->Upload(options.reference_path,
+                                 {.animation = options.reference_animation});
+    if (!reference.ok()) return reference.status();
   }
-  step->add_option("--unit", options->motion.unit_m,
-                   "Metres per unit of the file; default: guessed of BVH, 1 of "
-                   "glTF")
-      ->check(Positive())
-      ->option_text("M");
-  AddAnimationOption(*step, "--animation", &options->motion.animation);
-  return step;
+  const auto measured = (*clips)->Measure(clip->name(), reference->name());
+  if (!measured.ok()) return InFile(options.path, measured.status());
+  *output += MeasuredOutput(*measured, options.format);
+  return absl::OkStatus();
 }
 
-// A step that writes what it makes.
-CLI::App* AddMaking(CLI::App& clip, const std::string& name,
-                    const std::string& description, ClipOptions* options) {
-  CLI::App* step = AddStep(clip, name, description, options);
-  step->add_option("--out", options->out_path, "A .bvh, .gltf or .glb file")
-      ->required()
-      ->option_text("FILE");
-  return step;
+// What is to be done to a clip; nothing converts it.
+std::vector<v1::ClipStep> StepsOf(const ClipOptions& options) {
+  v1::ClipStep step;
+  if (options.smooth->parsed()) {
+    step.mutable_low_pass()->set_cutoff_hz(options.cutoff_hz);
+  } else if (options.mirror->parsed()) {
+    step.mutable_mirror();
+  } else if (options.plant->parsed()) {
+    step.mutable_plant_feet();
+  } else if (options.crop->parsed()) {
+    step.mutable_crop()->set_start_s(options.start_s);
+    if (options.end_s) step.mutable_crop()->set_end_s(*options.end_s);
+  } else if (options.resample->parsed()) {
+    step.mutable_resample()->set_frame_time_s(1 / options.rate_hz);
+  } else {
+    return {};
+  }
+  return {step};
+}
+
+absl::Status RunServedProcess(const ClipOptions& options,
+                              const std::string& server, std::string* output) {
+  // Before anything is sent.
+  if (const auto format = ClipFormatOf(options.out_path); !format.ok()) {
+    return format.status();
+  }
+  const auto clips = ServedClips::Open(server);
+  if (!clips.ok()) return clips.status();
+  absl::StatusOr<v1::Clip> clip =
+      (*clips)->Upload(options.path, options.motion);
+  if (!clip.ok()) return clip.status();
+  const std::vector<v1::ClipStep> steps = StepsOf(options);
+  if (!steps.empty()) {
+    clip = (*clips)->Process(clip->name(), steps);
+    if (!clip.ok()) return InFile(options.path, clip.status());
+    for (const std::string& note : clip->warnings()) {
+      absl::StrAppend(output, note, "\n");
+    }
+  }
+  absl::Status status = (*clips)->Write(clip->name(), options.out_path);
+  if (status.ok()) absl::StrAppend(output, "wrote ", options.out_path, "\n");
+  return status;
 }
 
 }  // namespace
@@ -179,52 +193,7 @@ Command AddClipCommand(CLI::App& app) {
   CLI::App* clip =
       app.add_subcommand("clip", "Measure and process motion files");
   clip->require_subcommand(1);
-  options->info = AddStep(*clip, "info", "What is in a file", options.get());
-  AddFormatOption(*options->info, &options->format);
-  options->measure = AddStep(*clip, "measure",
-                             "Skate, penetration, hyper-extension, jerk, "
-                             "jumps; see docs/motion-quality.md",
-                             options.get());
-  options->measure
-      ->add_option("--reference", options->reference_path,
-                   "The motion that FILE was made from: its contacts count, "
-                   "and ratios are printed")
-      ->option_text("SOURCE");
-  AddAnimationOption(*options->measure, "--reference-animation",
-                     &options->reference_animation);
-  options->measure
-      ->add_option("--picture", options->picture_path,
-                   "The motion as figures over time, with its contacts")
-      ->option_text("SVG");
-  AddFormatOption(*options->measure, &options->format);
-  options->smooth = AddMaking(
-      *clip, "smooth", "Without tremor, and without delay", options.get());
-  options->smooth
-      ->add_option("--cutoff", options->cutoff_hz,
-                   "Where half of a movement's power is left, Hz; default 6")
-      ->check(Positive())
-      ->option_text("HZ");
-  options->mirror =
-      AddMaking(*clip, "mirror", "Left becomes right", options.get());
-  options->plant = AddMaking(
-      *clip, "plant", "Feet that stand neither slide nor sink", options.get());
-  options->crop = AddMaking(*clip, "crop", "A part of it", options.get());
-  options->crop
-      ->add_option("--start", options->start_s, "From here on; default 0")
-      ->option_text("S");
-  options->crop->add_option("--end", options->end_s, "Up to here; default all")
-      ->option_text("S");
-  options->resample =
-      AddMaking(*clip, "resample", "Another frame rate", options.get());
-  options->resample->add_option("--rate", options->rate_hz, "Frames a second")
-      ->required()
-      ->check(Positive())
-      ->option_text("HZ");
-  options->blend =
-      AddMaking(*clip, "blend", "Two motions of one skeleton", options.get());
-  AddBlendOptions(*options->blend, &options->blending);
-  AddMaking(*clip, "convert", "The same motion in another format",
-            options.get());
+  AddClipSteps(*clip, app.get_option("--server"), options.get());
   clip->footer(
       "Examples:\n"
       "  gelenk clip info model.glb\n"
@@ -232,10 +201,17 @@ Command AddClipCommand(CLI::App& app) {
       "  gelenk clip smooth walk.bvh --cutoff 5 --out smooth.bvh\n"
       "  gelenk clip blend walk.bvh run.bvh --gait --part 0.3 --out jog.bvh\n"
       "  gelenk clip convert walk.bvh --out walk.glb");
-  return {clip, [options](const GlobalOptions&, std::string* output) {
+  return {clip, [options](const GlobalOptions& globals, std::string* output) {
+            const bool is_served = !globals.server.empty();
             if (options->info->parsed()) return RunInfo(*options, output);
-            if (options->measure->parsed()) return RunMeasure(*options, output);
-            return RunProcess(*options, output);
+            if (options->measure->parsed()) {
+              return is_served
+                         ? RunServedMeasure(*options, globals.server, output)
+                         : RunMeasure(*options, output);
+            }
+            return is_served
+                       ? RunServedProcess(*options, globals.server, output)
+                       : RunProcess(*options, output);
           }};
 }
 

@@ -12,8 +12,10 @@
 #include "client/cli/motion/follower.h"
 #include "client/cli/motion/motion_picture.h"
 #include "client/cli/motion/quality_text.h"
+#include "client/cli/motion/served_clips.h"
 #include "client/cli/service.h"
 #include "client/cli/text/table.h"
+#include "convert/joint_map.h"
 #include "gelenk/motion/clip_frames.h"
 
 namespace gelenk::cli {
@@ -48,6 +50,42 @@ absl::StatusOr<Eigen::MatrixXd> RetargetLive(const std::string& server,
   return FollowClip((*service)->connection(), source, target, record_path);
 }
 
+// By MotionService: both bodies go there, the motion comes back.
+absl::StatusOr<Eigen::MatrixXd> RetargetServed(
+    const std::string& server, const RetargetCommandOptions& options,
+    const BodyFile& source, const BodyFile& target) {
+  const auto clips = ServedClips::Open(server);
+  if (!clips.ok()) return clips.status();
+  const auto clip = (*clips)->Upload(options.path, options.motion);
+  if (!clip.ok()) return clip.status();
+  v1::RetargetClipRequest request;
+  request.set_clip(clip->name());
+  *request.mutable_joint_map() = convert::ToProto(source.roles, target.roles);
+  if (target.has_motion()) {
+    const auto onto = (*clips)->Upload(options.onto);
+    if (!onto.ok()) return onto.status();
+    request.mutable_target()->set_clip(onto->name());
+  } else {
+    const auto onto = (*clips)->Upload(*target.model->skeleton);
+    if (!onto.ok()) return onto.status();
+    request.mutable_target()->set_skeleton(*onto);
+  }
+  const auto made = (*clips)->Retarget(request);
+  if (!made.ok()) return made.status();
+  return (*clips)->Frames(made->name(), target.model->skeleton);
+}
+
+absl::StatusOr<Eigen::MatrixXd> Retarget(const RetargetCommandOptions& options,
+                                         const std::string& server,
+                                         const BodyFile& source,
+                                         const BodyFile& target) {
+  if (options.live) {
+    return RetargetLive(server, source, target, options.record_path);
+  }
+  if (!server.empty()) return RetargetServed(server, options, source, target);
+  return RetargetBody(source, target.model, LookAhead::kWholeClip, {});
+}
+
 absl::Status RunRetarget(const RetargetCommandOptions& options,
                          const std::string& server, std::string* output) {
   MapFile map;
@@ -67,9 +105,7 @@ absl::Status RunRetarget(const RetargetCommandOptions& options,
       ReadBodyFile(options.onto, std::nullopt, map.target);
   if (!target.ok()) return target.status();
   const absl::StatusOr<Eigen::MatrixXd> positions =
-      options.live
-          ? RetargetLive(server, *source, *target, options.record_path)
-          : RetargetBody(*source, target->model, LookAhead::kWholeClip, {});
+      Retarget(options, server, *source, *target);
   if (!positions.ok()) return positions.status();
   const absl::StatusOr<MotionClip> clip = ClipFromFrames(
       target->model->skeleton, *positions,
@@ -226,6 +262,7 @@ Command AddMapCommand(CLI::App& app) {
   auto options = std::make_shared<MapOptions>();
   CLI::App* map = app.add_subcommand(
       "map", "Which joint plays which role of a body, and how sure that is");
+  map->excludes(app.get_option("--server"));
   map->add_option("FILE", options->path, kBody)->required()->option_text("");
   map->add_option("ONTO", options->onto, "A second one")->option_text("");
   AddFormatOption(*map, &options->format);

@@ -34,4 +34,31 @@ void ToProto(const MotionComparison& comparison, v1::MotionComparison* proto) {
                                     kRadPerDegree);
 }
 
+MotionQuality FromProto(const v1::MotionQuality& proto) {
+  MotionQuality quality;
+  quality.skate.label_cm_s = proto.label_skate_cm_s();
+  quality.skate.label_with_turning_cm_s = proto.label_skate_with_turning_cm_s();
+  quality.skate.weighted_cm_s = proto.weighted_skate_cm_s();
+  quality.skate.rule_cm_s = proto.rule_skate_cm_s();
+  quality.skate.m_per_contact_s = proto.slide_m_per_contact_s();
+  quality.skate.contact_ratio = proto.contact_ratio();
+  quality.penetration.max_m = proto.max_penetration_m();
+  quality.penetration.mean_m = proto.mean_penetration_m();
+  quality.hyper_extended_frames = proto.hyper_extended_frame_count();
+  quality.jerk_m_s3 = proto.jerk_m_s3();
+  quality.largest_turn_deg = proto.largest_turn_rad() / kRadPerDegree;
+  return quality;
+}
+
+MotionComparison FromProto(const v1::MotionComparison& proto) {
+  MotionComparison comparison;
+  comparison.label_skate_ratio = proto.label_skate_ratio();
+  comparison.rule_skate_ratio = proto.rule_skate_ratio();
+  comparison.jerk_ratio = proto.jerk_ratio();
+  comparison.new_hyper_extended_frames = proto.new_hyper_extended_frame_count();
+  comparison.largest_extra_turn_deg =
+      proto.largest_extra_turn_rad() / kRadPerDegree;
+  return comparison;
+}
+
 }  // namespace gelenk::convert

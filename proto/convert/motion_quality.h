@@ -10,6 +10,10 @@ namespace gelenk::convert {
 void ToProto(const MotionQuality& quality, v1::MotionQuality* proto);
 void ToProto(const MotionComparison& comparison, v1::MotionComparison* proto);
 
+// The same back.
+MotionQuality FromProto(const v1::MotionQuality& proto);
+MotionComparison FromProto(const v1::MotionComparison& proto);
+
 }  // namespace gelenk::convert
 
 #endif  // GELENK_CONVERT_MOTION_QUALITY_H_

@@ -314,6 +314,78 @@ TEST_F(CommandLineTest, ARetargetedWalkIsMeasured) {
   EXPECT_THAT(Read(folder_ / "a.glb"), StartsWith("glTF"));
 }
 
+// What a running server makes of clips is what the command makes of them.
+TEST_F(CommandLineTest, AServerDoesTheSameToClips) {
+  gelenk::testing::ServerProcess gelenkd(GELENKD);
+  ASSERT_EQ(gelenkd.Start(), absl::OkStatus());
+  Write("t_pose.bvh", gelenk::testing::WalkingBvhBehindATPose(kFrames));
+  const std::vector<std::vector<std::string>> commands = {
+      {"clip", "smooth", "t_pose.bvh", "--cutoff", "5"},
+      {"clip", "mirror", "walk.bvh"},
+      {"clip", "plant", "walk.bvh"},
+      {"clip", "crop", "walk.bvh", "--start", "0.2", "--end", "0.4"},
+      {"clip", "resample", "walk.bvh", "--rate", "25"},
+      {"clip", "convert", "walk.bvh"},
+      {"retarget", "walk.bvh", "--onto", "humanoid"},
+      {"retarget", "walk.bvh", "--onto", "t_pose.bvh"}};
+  for (std::vector<std::string> command : commands) {
+    SCOPED_TRACE(command[1]);
+    std::vector<std::string> outputs;
+    std::vector<std::string> files;
+    for (const bool is_served : {false, true}) {
+      server_ = is_served ? gelenkd.target() : "";
+      fs::remove(folder_ / "out.bvh");
+      std::vector<std::string> arguments = command;
+      arguments.insert(arguments.end(), {"--out", "out.bvh"});
+      const Ending ending = Run(arguments);
+      EXPECT_EQ(ending.exit_code, 0) << ending.err;
+      outputs.push_back(ending.out);
+      files.push_back(Read(folder_ / "out.bvh"));
+    }
+    EXPECT_EQ(outputs[0], outputs[1]);
+    EXPECT_EQ(files[0], files[1]);
+    EXPECT_THAT(files[0], StartsWith("HIERARCHY"));
+  }
+  std::vector<std::string> measures;
+  for (const bool is_served : {false, true}) {
+    server_ = is_served ? gelenkd.target() : "";
+    measures.push_back(
+        Run({"clip", "measure", "out.bvh", "--reference", "walk.bvh"}).out);
+  }
+  EXPECT_EQ(measures[0], measures[1]);
+  EXPECT_THAT(measures[0], HasSubstr("skate of planted points"));
+  // Nothing stays there.
+  client::Connection connection(gelenkd.target());
+  EXPECT_EQ(
+      connection
+          .Call(&v1::MotionService::Stub::ListClips, v1::ListClipsRequest())
+          ->clips_size(),
+      0);
+  EXPECT_EQ(connection
+                .Call(&v1::KinematicsService::Stub::ListSkeletons,
+                      v1::ListSkeletonsRequest())
+                ->skeletons_size(),
+            0);
+  const Ending bad =
+      Run({"clip", "crop", "walk.bvh", "--start", "9", "--out", "out.bvh"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, AllOf(HasSubstr("\"walk.bvh\""), HasSubstr("start_s")));
+}
+
+TEST_F(CommandLineTest, CommandsOnFilesRefuseAServer) {
+  server_ = "127.0.0.1:1";
+  const std::vector<std::vector<std::string>> commands = {
+      {"clip", "info", "walk.bvh"},
+      {"clip", "blend", "walk.bvh", "walk.bvh", "--out", "out.bvh"},
+      {"clip", "measure", "walk.bvh", "--picture", "out.svg"},
+      {"map", "walk.bvh"}};
+  for (const std::vector<std::string>& command : commands) {
+    const Ending ending = Run(command);
+    EXPECT_EQ(ending.exit_code, 2) << command[1];
+    EXPECT_THAT(ending.err, HasSubstr("excludes --server"));
+  }
+}
+
 TEST_F(CommandLineTest, MapsAreProposedAndOverridden) {
   const json map = RunJson({"map", "walk.bvh", "humanoid"});
   std::map<std::string, std::string> joints;

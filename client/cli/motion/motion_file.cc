@@ -89,6 +89,7 @@ absl::StatusOr<MotionFile> ReadGltfMotion(const std::string& path,
       ClipFromGltf((*animations)[*index], *document, *import);
   if (!clip.ok()) return InFile(path, clip.status());
   MotionFile motion{.clip = std::move(clip->clip)};
+  motion.animation_index = *index;
   motion.unit_m = import->unit_m;
   motion.warnings = import->warnings;
   motion.warnings.insert(motion.warnings.end(), clip->warnings.begin(),

@@ -32,6 +32,8 @@ struct MotionFile {
   double unit_m = 1;
   // Of glTF, in order; empty names as the file has them.
   std::vector<std::string> animation_names = {};
+  // Which of them this is.
+  int animation_index = 0;
   // Of a VRM file: which of its joints are the humanoid's bones, as it says.
   std::vector<std::pair<std::string, std::string>> joint_of_bone = {};
   std::vector<std::string> warnings = {};
