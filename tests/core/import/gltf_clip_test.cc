@@ -143,6 +143,17 @@ TEST(GltfClipTest, JointsAreWhereTheSceneShowsThem) {
 // By appendix C of the format, a quarter of the way through two seconds: the
 // weights of value, out tangent, value, in tangent are 0.84375, 2 * 0.140625,
 // 0.15625 and 2 * -0.046875.
+TEST(GltfClipTest, ChannelsBindByIndexWhateverNodesAreCalled) {
+  const std::string bytes = MovingFile().Gltf();
+  const absl::StatusOr<GltfClip> named = ClipOf(bytes);
+  const absl::StatusOr<GltfClip> alike = ClipOf(absl::StrReplaceAll(
+      bytes, {{"\"armature\"", "\"knee\""}, {"\"hip\"", "\"knee\""}}));
+  ASSERT_TRUE(named.ok() && alike.ok()) << alike.status();
+  for (double time_s : {0.0, 0.5, 1.9, 2.0}) {
+    EXPECT_EQ(At(alike->clip, time_s), At(named->clip, time_s)) << time_s;
+  }
+}
+
 TEST(GltfClipTest, CubicSplineIsExact) {
   File file;
   file.AddView(Bytes<float>({0, 2}));
