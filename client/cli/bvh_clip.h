@@ -31,6 +31,12 @@ struct BvhClip {
 absl::StatusOr<BvhClip> ReadBvhClip(const std::string& path,
                                     std::optional<double> unit_m);
 
+// The same of an Acclaim skeleton and its motion, as the form of a BVH file;
+// `amc_path` may be empty.
+absl::StatusOr<BvhClip> ReadAsfClip(const std::string& asf_path,
+                                    const std::string& amc_path,
+                                    std::optional<double> unit_m);
+
 // The clip's file with other poses in it.
 absl::Status WriteBvhClip(const BvhClip& clip, const Eigen::MatrixXd& poses,
                           const std::string& path);

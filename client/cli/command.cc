@@ -22,8 +22,8 @@ CLI::Validator Positive() {
 
 void AddSkeletonFileOptions(CLI::App& app, SkeletonFileOptions* options) {
   app.add_option("FILE", options->path,
-                 "Motion capture (.bvh), a robot (.urdf), a model (.gltf, "
-                 ".glb), or a skeleton (.json)")
+                 "Motion capture (.bvh, .asf), a robot (.urdf), a model "
+                 "(.gltf, .glb), or a skeleton (.json)")
       ->required()
       ->option_text("");
   app.add_option("--unit", options->unit_m,

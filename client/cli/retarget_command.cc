@@ -200,8 +200,8 @@ absl::Status RunMap(const MapOptions& options, std::string* output) {
 }
 
 constexpr char kBody[] =
-    "Motion capture (.bvh), a robot (.urdf), a model (.gltf, .glb), a skeleton "
-    "(.json), or humanoid, a body of our own";
+    "Motion capture (.bvh, .asf), a robot (.urdf), a model (.gltf, .glb), a "
+    "skeleton (.json), or humanoid, a body of our own";
 
 }  // namespace
 
@@ -211,7 +211,7 @@ Command AddRetargetCommand(CLI::App& app) {
       "retarget", "A clip's motion onto another body, feet planted");
   retarget
       ->add_option("FILE", options->path,
-                   "Motion capture (.bvh), or a model with an animation "
+                   "Motion capture (.bvh, .amc), or a model with an animation "
                    "(.gltf, .glb)")
       ->required()
       ->option_text("");
@@ -245,6 +245,7 @@ Command AddRetargetCommand(CLI::App& app) {
       ->check(Positive())
       ->option_text("M");
   AddAnimationOption(*retarget, "--animation", &options->motion.animation);
+  AddSkeletonOption(*retarget, &options->motion.skeleton_path);
   retarget
       ->add_option("--picture", options->picture_path,
                    "Both motions as figures over time, with their contacts")

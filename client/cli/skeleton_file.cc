@@ -31,9 +31,8 @@ SkeletonFile Imported(const std::string& path,
   return file;
 }
 
-absl::StatusOr<SkeletonFile> FromBvh(const std::string& path,
-                                     std::optional<double> unit_m) {
-  absl::StatusOr<BvhClip> clip = ReadBvhClip(path, unit_m);
+absl::StatusOr<SkeletonFile> FromClip(const std::string& path,
+                                      absl::StatusOr<BvhClip> clip) {
   if (!clip.ok()) return clip.status();
   SkeletonFile file =
       Imported(path, clip->import.skeleton, clip->import.warnings);
@@ -114,7 +113,8 @@ absl::StatusOr<SkeletonFile> ReadSkeletonFile(
   if (is_gltf) {
     return FromGltf(path, {.unit_m = unit_m.value_or(1), .skin = skin});
   }
-  if (ends_with(".bvh")) return FromBvh(path, unit_m);
+  if (ends_with(".bvh")) return FromClip(path, ReadBvhClip(path, unit_m));
+  if (ends_with(".asf")) return FromClip(path, ReadAsfClip(path, "", unit_m));
   if (ends_with(".urdf")) {
     if (!unit_m) return FromUrdf(path);
     return InFile(path,
@@ -122,7 +122,7 @@ absl::StatusOr<SkeletonFile> ReadSkeletonFile(
   }
   if (ends_with(".json")) return FromJson(path);
   return absl::InvalidArgumentError(absl::StrCat(
-      "\"", path, "\": want a .bvh, .urdf, .gltf, .glb or .json file"));
+      "\"", path, "\": want a .bvh, .asf, .urdf, .gltf, .glb or .json file"));
 }
 
 }  // namespace gelenk::cli

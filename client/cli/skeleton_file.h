@@ -22,15 +22,16 @@ struct SkeletonFile {
   std::shared_ptr<const Skeleton> skeleton;
   // The same as a message, with display name and warnings.
   v1::Skeleton message;
-  // Of a BVH file.
+  // Of a BVH file, and of an ASF file as of one without frames.
   std::optional<BvhClip> clip;
   // Of a VRM file: which of its joints are the humanoid's bones, as it says.
   std::vector<std::pair<std::string, std::string>> joint_of_bone;
 };
 
-// Reads what the name's end says: `.bvh`, `.urdf`, `.gltf`, `.glb`, or `.json`:
-// proto3 JSON of gelenk.v1.Skeleton. `unit_m` is for BVH and glTF, `skin` for
-// glTF; elsewhere they are refused. Errors name the file and the place in it.
+// Reads what the name's end says: `.bvh`, `.asf`, `.urdf`, `.gltf`, `.glb`, or
+// `.json`: proto3 JSON of gelenk.v1.Skeleton. `unit_m` is for BVH, ASF and
+// glTF, `skin` for glTF; elsewhere they are refused. Errors name the file and
+// the place in it.
 absl::StatusOr<SkeletonFile> ReadSkeletonFile(
     const std::string& path, std::optional<double> unit_m,
     const std::optional<std::string>& skin = std::nullopt);

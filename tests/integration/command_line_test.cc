@@ -440,6 +440,34 @@ TEST_F(CommandLineTest, ClipsTellWhatIsInThem) {
   EXPECT_THAT(bad.err, HasSubstr("--animation: want 0 to 0 or one of \""));
 }
 
+TEST_F(CommandLineTest, AcclaimsFilesBecomeClips) {
+  Write("leg.asf",
+        ":units\n angle deg\n:root\n order TX TY TZ RX RY RZ\n axis XYZ\n"
+        ":bonedata\n begin\n name thigh\n direction 0 -1 0\n length 40\n"
+        " axis 0 0 0 XYZ\n dof rx\n end\n begin\n name shin\n"
+        " direction 0 -1 0\n length 40\n end\n"
+        ":hierarchy\n begin\n root thigh\n thigh shin\n end\n");
+  Write("kick.amc",
+        ":DEGREES\n1\nroot 0 80 0 0 0 0\nthigh 0\n2\nroot 0 80 5 0 0 0\n"
+        "thigh 30\n");
+  EXPECT_THAT(Run({"info", "leg.asf", "--unit", "0.01"}).out,
+              AllOf(HasSubstr("thigh"), HasSubstr("shin")));
+  const Ending made = Run({"clip", "convert", "kick.amc", "--skeleton",
+                           "leg.asf", "--out", "kick.bvh"});
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  const auto written = ReadBvh(Read(folder_ / "kick.bvh"));
+  ASSERT_TRUE(written.ok()) << written.status();
+  EXPECT_EQ(written->frame_count(), 2);
+  EXPECT_EQ(written->joints[1].name, "thigh");
+  EXPECT_NEAR(written->motion(7, 1), 30, 1e-9);
+  Ending bad = Run({"clip", "convert", "kick.amc", "--out", "kick.bvh"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.err, HasSubstr("--skeleton: want the .asf file"));
+  Write("bad.amc", "1\nroot 0 80 0 0 0\n");
+  bad = Run({"clip", "info", "bad.amc", "--skeleton", "leg.asf"});
+  EXPECT_THAT(bad.err, HasSubstr("\"bad.amc\": line 3, column 1: expected"));
+}
+
 TEST_F(CommandLineTest, AnAnimationMovesOtherBodies) {
   ASSERT_EQ(Run({"clip", "convert", "walk.bvh", "--out", "d.glb"}).exit_code,
             0);

@@ -47,6 +47,16 @@ absl::StatusOr<Source> ReadSource(const std::string& path,
   return source;
 }
 
+absl::StatusOr<Source> ReadAmc(const std::string& path,
+                               const MotionFileOptions& options) {
+  absl::StatusOr<BvhClip> clip = ReadAmcClip(path, options);
+  if (!clip.ok()) return clip.status();
+  Source source{.skeleton = clip->import.skeleton, .frames = clip->poses};
+  source.frame_time_s = clip->document.frame_time_s;
+  source.clip = *std::move(clip);
+  return source;
+}
+
 absl::StatusOr<Source> ReadAnimation(const std::string& path,
                                      const MotionFileOptions& options) {
   absl::StatusOr<MotionFile> file = ReadMotionFile(path, options);
@@ -133,6 +143,9 @@ absl::StatusOr<BodyFile> ReadMovingBodyFile(
   if (!options.animation.empty()) {
     return InFile(path, absl::InvalidArgumentError(
                             "--animation: only glTF files have several"));
+  }
+  if (absl::EndsWithIgnoreCase(path, ".amc")) {
+    return BodyOf(path, ReadAmc(path, options), overrides);
   }
   return ReadBodyFile(path, options.unit_m, overrides);
 }

@@ -9,7 +9,7 @@ CLI::App* AddStep(CLI::App& clip, const std::string& name,
                   const std::string& description, ClipOptions* options) {
   CLI::App* step = clip.add_subcommand(name, description);
   step->add_option(name == "blend" ? "A" : "FILE", options->path,
-                   "Motion capture (.bvh), or a model with an animation "
+                   "Motion capture (.bvh, .amc), or a model with an animation "
                    "(.gltf, .glb)")
       ->required()
       ->option_text("");
@@ -24,6 +24,7 @@ CLI::App* AddStep(CLI::App& clip, const std::string& name,
       ->check(Positive())
       ->option_text("M");
   AddAnimationOption(*step, "--animation", &options->motion.animation);
+  AddSkeletonOption(*step, &options->motion.skeleton_path);
   return step;
 }
 

@@ -31,9 +31,8 @@ OpenUri OpenBeside(const std::string& path) {
   };
 }
 
-absl::StatusOr<MotionFile> ReadBvhMotion(const std::string& path,
-                                         const MotionFileOptions& options) {
-  absl::StatusOr<BvhClip> file = ReadBvhClip(path, options.unit_m);
+absl::StatusOr<MotionFile> MotionOf(const std::string& path,
+                                    absl::StatusOr<BvhClip> file) {
   if (!file.ok()) return file.status();
   absl::StatusOr<MotionClip> clip =
       ClipFromBvh(file->document, file->import, BaseName(path));
@@ -110,21 +109,37 @@ void AddAnimationOption(CLI::App& app, const std::string& name,
       ->option_text("NAME|INDEX");
 }
 
+void AddSkeletonOption(CLI::App& app, std::string* path) {
+  app.add_option("--skeleton", *path, "The skeleton of an .amc file")
+      ->option_text("FILE.asf");
+}
+
+absl::StatusOr<BvhClip> ReadAmcClip(const std::string& path,
+                                    const MotionFileOptions& options) {
+  if (options.skeleton_path.empty()) {
+    return InFile(path, absl::InvalidArgumentError(
+                            "--skeleton: want the .asf file that this moves"));
+  }
+  return ReadAsfClip(options.skeleton_path, path, options.unit_m);
+}
+
 absl::StatusOr<MotionFile> ReadMotionFile(const std::string& path,
                                           const MotionFileOptions& options) {
   if (absl::EndsWithIgnoreCase(path, ".gltf") ||
       absl::EndsWithIgnoreCase(path, ".glb")) {
     return ReadGltfMotion(path, options);
   }
-  if (!absl::EndsWithIgnoreCase(path, ".bvh")) {
-    return InFile(
-        path, absl::InvalidArgumentError("want a .bvh, .gltf or .glb file"));
+  const bool is_amc = absl::EndsWithIgnoreCase(path, ".amc");
+  if (!is_amc && !absl::EndsWithIgnoreCase(path, ".bvh")) {
+    return InFile(path, absl::InvalidArgumentError(
+                            "want a .bvh, .amc, .gltf or .glb file"));
   }
   if (!options.animation.empty()) {
     return InFile(path, absl::InvalidArgumentError(
-                            "--animation: a BVH file has only one motion"));
+                            "--animation: the file has only one motion"));
   }
-  return ReadBvhMotion(path, options);
+  return MotionOf(path, is_amc ? ReadAmcClip(path, options)
+                               : ReadBvhClip(path, options.unit_m));
 }
 
 }  // namespace gelenk::cli

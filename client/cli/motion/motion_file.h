@@ -1,4 +1,4 @@
-// Files that hold motion: BVH, and glTF with its animations.
+// Files that hold motion: BVH, AMC, and glTF with its animations.
 #ifndef CLIENT_CLI_MOTION_MOTION_FILE_H_
 #define CLIENT_CLI_MOTION_MOTION_FILE_H_
 
@@ -19,15 +19,20 @@ struct MotionFileOptions {
   std::optional<double> unit_m = std::nullopt;
   // Of glTF, by name or by index; empty means the first.
   std::string animation = {};
+  // Of AMC: the ASF file that it moves.
+  std::string skeleton_path = {};
 };
 
 // --animation NAME|INDEX
 void AddAnimationOption(CLI::App& app, const std::string& name,
                         std::string* animation);
+// --skeleton FILE.asf
+void AddSkeletonOption(CLI::App& app, std::string* path);
 
 struct MotionFile {
   MotionClip clip;
-  // What a BVH file's own form is written back into.
+  // What a BVH file's own form, or that of an AMC file as BVH, is written back
+  // into.
   std::optional<BvhClip> form = std::nullopt;
   double unit_m = 1;
   // Of glTF, in order; empty names as the file has them.
@@ -39,9 +44,13 @@ struct MotionFile {
   std::vector<std::string> warnings = {};
 };
 
-// Reads a .bvh, .gltf or .glb; buffers of a .gltf may be files in its folder.
-// Errors name the file; INVALID_ARGUMENT for one without motion, or without
-// that animation, naming those that there are.
+// The motion of an AMC file. INVALID_ARGUMENT without its skeleton.
+absl::StatusOr<BvhClip> ReadAmcClip(const std::string& path,
+                                    const MotionFileOptions& options);
+
+// Reads a .bvh, .amc, .gltf or .glb; buffers of a .gltf may be files in its
+// folder. Errors name the file; INVALID_ARGUMENT for one without motion, or
+// without that animation, naming those that there are.
 absl::StatusOr<MotionFile> ReadMotionFile(
     const std::string& path, const MotionFileOptions& options = {});
 

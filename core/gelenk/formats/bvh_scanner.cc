@@ -79,6 +79,10 @@ absl::string_view BvhScanner::TakeName() {
   return absl::StripAsciiWhitespace(name);
 }
 
+void BvhScanner::SkipLine() {
+  while (at_ < text_.size() && !EndsLine(text_[at_])) ++at_;
+}
+
 absl::StatusOr<double> BvhScanner::TakeNumber() {
   const absl::string_view token = Peek();
   double number = 0;

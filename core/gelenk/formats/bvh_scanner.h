@@ -40,6 +40,9 @@ class BvhScanner {
   // without blanks around it.
   absl::string_view TakeName();
 
+  // Up to the end of the line.
+  void SkipLine();
+
   // A finite decimal number, whatever the locale; a sign + and a missing zero
   // before the point are fine. At most kMaxMagnitude.
   absl::StatusOr<double> TakeNumber();

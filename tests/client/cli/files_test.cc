@@ -115,7 +115,8 @@ TEST_F(FilesTest, ABadSkeletonIsToldByItsField) {
 TEST_F(FilesTest, OtherKindsOfFilesAreRefused) {
   const auto file = ReadSkeletonFile("model.fbx", std::nullopt);
   EXPECT_EQ(std::string(file.status().message()),
-            "\"model.fbx\": want a .bvh, .urdf, .gltf, .glb or .json file");
+            "\"model.fbx\": want a .bvh, .asf, .urdf, .gltf, .glb or "
+            ".json file");
 }
 
 TEST_F(FilesTest, ReadsARobot) {
