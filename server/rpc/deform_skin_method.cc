@@ -84,14 +84,16 @@ class DeformSkin final : public Production<v1::DeformSkinResponse> {
 };
 
 absl::StatusOr<std::unique_ptr<Production<v1::DeformSkinResponse>>> Open(
-    const ServiceState& state, const v1::DeformSkinRequest& request) {
+    ServiceState& state, const v1::DeformSkinRequest& request) {
   absl::StatusOr<StoredSkin> stored = FindSkin(state, "name", request.name());
   if (!stored.ok()) return stored.status();
   absl::StatusOr<Frames> frames = ReadFrames(state, *stored, request);
   if (!frames.ok()) return frames.status();
-  absl::StatusOr<std::unique_ptr<SkinFrames>> encoder = SkinFrames::Create(
-      *std::move(stored), {request.encoding(), request.keyframe_interval(),
-                           request.include_warnings()});
+  absl::StatusOr<std::unique_ptr<SkinFrames>> encoder =
+      SkinFrames::Create(*std::move(stored),
+                         {request.encoding(), request.keyframe_interval(),
+                          request.include_warnings()},
+                         state.PartRunner());
   if (!encoder.ok()) return encoder.status();
   return std::make_unique<DeformSkin>(*std::move(encoder), *std::move(frames),
                                       request.include_layout());

@@ -6,6 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "absl/functional/function_ref.h"
+#include "gelenk/base/parallel_for.h"
 #include "server/options.h"
 #include "server/rpc/worker_pool.h"
 #include "server/session/session_registry.h"
@@ -55,6 +57,13 @@ struct ServiceState {
 
   // Last: its threads end before what they work on.
   WorkerPool workers;
+
+  // Lends idle workers to loops in parts, as long as this lives.
+  ParallelFor PartRunner() {
+    return [this](int count, absl::FunctionRef<void(int)> part) {
+      workers.RunParts(count, part);
+    };
+  }
 };
 
 // A place under a limit, given back when it goes.

@@ -77,8 +77,8 @@ absl::StatusOr<const LayeredSkin*> NeedLayered(const StoredSkin& stored) {
   if (layered != nullptr) return layered;
   return absl::FailedPreconditionError(
       absl::StrCat("name: ", stored.name,
-                   " is no mesh in layered volumes: nothing is "
-                   "bound"));
+                   " is no mesh in layered volumes: there is no binding; "
+                   "what has weights follows those it was created with"));
 }
 
 // `muscles` with what the request changes.

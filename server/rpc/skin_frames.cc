@@ -13,7 +13,8 @@
 namespace gelenk::server {
 
 absl::StatusOr<std::unique_ptr<SkinFrames>> SkinFrames::Create(
-    StoredSkin stored, const SkinFrameOptions& options) {
+    StoredSkin stored, const SkinFrameOptions& options,
+    ParallelFor parallel_for) {
   Violations violations;
   const v1::VertexEncoding encoding =
       options.encoding == v1::VERTEX_ENCODING_UNSPECIFIED
@@ -34,18 +35,21 @@ absl::StatusOr<std::unique_ptr<SkinFrames>> SkinFrames::Create(
         absl::StrCat("want 0 or more, got ", options.keyframe_interval));
   }
   if (!violations.empty()) return violations.ToStatus();
-  return std::unique_ptr<SkinFrames>(
-      new SkinFrames(std::move(stored), encoding, options));
+  return std::unique_ptr<SkinFrames>(new SkinFrames(
+      std::move(stored), encoding, options, std::move(parallel_for)));
 }
 
 SkinFrames::SkinFrames(StoredSkin stored, v1::VertexEncoding encoding,
-                       const SkinFrameOptions& options)
+                       const SkinFrameOptions& options,
+                       ParallelFor parallel_for)
     : stored_(std::move(stored)),
       skin_(*stored_.revision.skin),
       encoding_(encoding),
       include_warnings_(options.include_warnings),
       delta_(options.keyframe_interval == 0 ? kDefaultKeyframeInterval
-                                            : options.keyframe_interval) {}
+                                            : options.keyframe_interval) {
+  workspace_.parallel_for = std::move(parallel_for);
+}
 
 void SkinFrames::FillLayout(v1::SkinLayout* proto) const {
   proto->set_name(RevisionText(stored_.name, stored_.revision.number));

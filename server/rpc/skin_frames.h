@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "absl/status/statusor.h"
+#include "gelenk/base/parallel_for.h"
 #include "gelenk/skin/skin.h"
 #include "gelenk/skin/vertex_stream.h"
 #include "gelenk/v1/skin_service.pb.h"
@@ -29,8 +30,10 @@ inline constexpr int kDefaultKeyframeInterval = 60;
 class SkinFrames {
  public:
   // INVALID_ARGUMENT naming "encoding" or "keyframe_interval".
+  // `parallel_for` deforms large skins in parts; may be empty.
   static absl::StatusOr<std::unique_ptr<SkinFrames>> Create(
-      StoredSkin stored, const SkinFrameOptions& options);
+      StoredSkin stored, const SkinFrameOptions& options,
+      ParallelFor parallel_for);
 
   const StoredSkin& stored() const { return stored_; }
 
@@ -47,7 +50,7 @@ class SkinFrames {
 
  private:
   SkinFrames(StoredSkin stored, v1::VertexEncoding encoding,
-             const SkinFrameOptions& options);
+             const SkinFrameOptions& options, ParallelFor parallel_for);
 
   void Encode(const ConstVectorView& positions,
               const RigidTransform& world_from_skeleton, std::string* bytes);

@@ -100,8 +100,8 @@ absl::Status WatchSkinCall::Open(const v1::WatchSkinRequest::Start& start) {
 }
 
 absl::Status WatchSkinCall::Show(StoredSkin stored) {
-  absl::StatusOr<std::unique_ptr<SkinFrames>> frames =
-      SkinFrames::Create(std::move(stored), frame_options_);
+  absl::StatusOr<std::unique_ptr<SkinFrames>> frames = SkinFrames::Create(
+      std::move(stored), frame_options_, state_->PartRunner());
   if (!frames.ok()) return frames.status();
   frames_ = *std::move(frames);
   layout_due_ = true;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -113,7 +114,7 @@ LayeredSkin::LayeredSkin(std::shared_ptr<const VolumeRig> rig,
       mesh_(std::move(mesh)),
       binding_(std::move(binding)),
       normals_(VertexNormals(mesh_)),
-      runs_(std::move(slots.runs)) {
+      runs_(CutRuns(slots.runs, block_count())) {
   FillBlocks();
 }
 
@@ -151,7 +152,8 @@ void LayeredSkin::FillBlocks() {
 void LayeredSkin::SortParts() {
   std::vector<int> next(rig_->volume_count(), 0);
   for (const VolumeShare& part : parts_) ++next[part.volume];
-  part_runs_ = RunsOf(next, &part_block_count_);
+  const std::vector<kernel::VolumeRun> runs = RunsOf(next, &part_block_count_);
+  part_runs_ = CutRuns(runs, part_block_count_);
   part_rows_.Resize(part_block_count_, kernel::kPartRows);
   for (const VolumeShare& part : parts_) {
     const int slot = next[part.volume]++;
@@ -222,13 +224,45 @@ void LayeredSkin::DeformShared(const SharedVertex& shared,
   *normal = tangents[0].cross(tangents[1]).normalized();
 }
 
+LayeredSkin::PartRuns LayeredSkin::CutRuns(
+    absl::Span<const kernel::VolumeRun> runs, int block_count) {
+  PartRuns cut;
+  for (const kernel::VolumeRun& run : runs) {
+    for (int block = run.first_block; block < run.end_block;) {
+      const int end = std::min(run.end_block,
+                               (block / kBlocksPerPart + 1) * kBlocksPerPart);
+      if (block % kBlocksPerPart == 0) {
+        cut.first_runs.push_back(static_cast<int>(cut.runs.size()));
+      }
+      cut.runs.push_back({run.volume, block, end});
+      block = end;
+    }
+  }
+  cut.first_runs.resize((block_count + kBlocksPerPart - 1) / kBlocksPerPart + 1,
+                        static_cast<int>(cut.runs.size()));
+  return cut;
+}
+
+kernel::DeformLayout LayeredSkin::LayoutOf(const PartRuns& cut, int first,
+                                           int end,
+                                           const SkinWorkspace& workspace,
+                                           const float* vertices) {
+  const int first_run = cut.first_runs[first / kBlocksPerPart];
+  const int end_run =
+      cut.first_runs[(end + kBlocksPerPart - 1) / kBlocksPerPart];
+  return {workspace.coefficients.data(), cut.runs.data() + first_run,
+          end_run - first_run, vertices};
+}
+
 void LayeredSkin::DeformParts(SkinWorkspace& workspace) const {
   if (shared_.empty()) return;
   workspace.parts.Resize(part_block_count_, kernel::kPartSumRows);
-  functions().deform_parts(
-      {workspace.coefficients.data(), part_runs_.data(),
-       static_cast<int>(part_runs_.size()), part_rows_.data()},
-      workspace.parts.data());
+  ForParts(workspace, part_block_count_, kBlocksPerPart,
+           [&](int first, int end) {
+             functions().deform_parts(
+                 LayoutOf(part_runs_, first, end, workspace, part_rows_.data()),
+                 workspace.parts.data());
+           });
 }
 
 void LayeredSkin::SumParts(const SharedVertex& shared,
@@ -263,8 +297,7 @@ void LayeredSkin::FillCoefficients(const VolumeFrame& frame,
 
 kernel::DeformLayout LayeredSkin::LayoutIn(
     const SkinWorkspace& workspace) const {
-  return {workspace.coefficients.data(), runs_.data(),
-          static_cast<int>(runs_.size()), vertices_.data()};
+  return LayoutOf(runs_, 0, block_count(), workspace, vertices_.data());
 }
 
 void LayeredSkin::Deform(const ConstVectorView& positions,
@@ -278,13 +311,19 @@ void LayeredSkin::DeformIn(const VolumeFrame& frame, SkinWorkspace& workspace,
                            VertexBlocks& blocks) const {
   FillCoefficients(frame, workspace);
   blocks.Resize(block_count());
-  functions().deform(LayoutIn(workspace), blocks.data());
+  ForParts(workspace, block_count(), kBlocksPerPart, [&](int first, int end) {
+    functions().deform(LayoutOf(runs_, first, end, workspace, vertices_.data()),
+                       blocks.data());
+  });
   DeformParts(workspace);
-  for (const SharedVertex& shared : shared_) {
-    Eigen::Vector3f position, normal;
-    SumParts(shared, workspace, &position, &normal);
-    blocks.Set(shared.slot, position, normal);
-  }
+  ForParts(workspace, static_cast<int>(shared_.size()), kSingleVerticesPerPart,
+           [&](int first, int end) {
+             for (int i = first; i < end; ++i) {
+               Eigen::Vector3f position, normal;
+               SumParts(shared_[i], workspace, &position, &normal);
+               blocks.Set(shared_[i].slot, position, normal);
+             }
+           });
 }
 
 void LayeredSkin::DeformQuantized(const ConstVectorView& positions,
@@ -302,23 +341,37 @@ void LayeredSkin::DeformQuantizedIn(const VolumeFrame& frame,
   FillCoefficients(frame, workspace);
   blocks.Resize(block_count());
   const kernel::QuantizationGrid grid = GridOf(blocks.box);
-  functions().deform_quantized(LayoutIn(workspace), grid, blocks.data());
-  if (shared_.empty()) return;
+  ForParts(workspace, block_count(), kBlocksPerPart, [&](int first, int end) {
+    functions().deform_quantized(
+        LayoutOf(runs_, first, end, workspace, vertices_.data()), grid,
+        blocks.data());
+  });
   DeformParts(workspace);
-  // Sixteen at a time, and each to its place.
-  workspace.blocks.Resize(1);
-  QuantizedBlocks& sixteen = workspace.quantized;
-  sixteen.Resize(1);
-  for (size_t first = 0; first < shared_.size(); first += kVerticesPerBlock) {
-    const size_t end = std::min(first + kVerticesPerBlock, shared_.size());
-    for (size_t i = first; i < end; ++i) {
+  ForParts(workspace, static_cast<int>(shared_.size()), kSingleVerticesPerPart,
+           [&](int first, int end) {
+             QuantizeShared(workspace, first, end, blocks);
+           });
+}
+
+// Sixteen at a time, and each to its place.
+void LayeredSkin::QuantizeShared(const SkinWorkspace& workspace, int first,
+                                 int end, QuantizedBlocks& blocks) const {
+  const kernel::QuantizationGrid grid = GridOf(blocks.box);
+  alignas(64) float floats[kernel::kBlockFloats] = {};
+  alignas(64) uint8_t bytes[kernel::kQuantizedBlockBytes];
+  for (int at = first; at < end; at += kVerticesPerBlock) {
+    const int count = std::min(kVerticesPerBlock, end - at);
+    for (int lane = 0; lane < count; ++lane) {
       Eigen::Vector3f position, normal;
-      SumParts(shared_[i], workspace, &position, &normal);
-      workspace.blocks.Set(static_cast<int>(i - first), position, normal);
+      SumParts(shared_[at + lane], workspace, &position, &normal);
+      for (int k = 0; k < 3; ++k) {
+        floats[k * kVerticesPerBlock + lane] = position[k];
+        floats[(3 + k) * kVerticesPerBlock + lane] = normal[k];
+      }
     }
-    functions().quantize(workspace.blocks.data(), 1, grid, sixteen.data());
-    for (size_t i = first; i < end; ++i) {
-      blocks.CopySlot(sixteen, static_cast<int>(i - first), shared_[i].slot);
+    functions().quantize(floats, 1, grid, bytes);
+    for (int lane = 0; lane < count; ++lane) {
+      blocks.SetSlot(bytes, lane, shared_[at + lane].slot);
     }
   }
 }

@@ -99,8 +99,22 @@ class LayeredSkin : public Skin {
   void SortParts();
   void DeformShared(const SharedVertex& shared, const VolumeFrame& frame,
                     Eigen::Vector3d* position, Eigen::Vector3d* normal) const;
+  // Runs that end at the ends of parts, and the first run of each part.
+  struct PartRuns {
+    std::vector<kernel::VolumeRun> runs;
+    std::vector<int> first_runs;
+  };
+  static PartRuns CutRuns(absl::Span<const kernel::VolumeRun> runs,
+                          int block_count);
+  // Of blocks [first, end), which are whole parts.
+  static kernel::DeformLayout LayoutOf(const PartRuns& cut, int first, int end,
+                                       const SkinWorkspace& workspace,
+                                       const float* vertices);
   // All parts by the kernel, then the sums of one vertex.
   void DeformParts(SkinWorkspace& workspace) const;
+  // shared_[first] .. shared_[end - 1].
+  void QuantizeShared(const SkinWorkspace& workspace, int first, int end,
+                      QuantizedBlocks& blocks) const;
   void SumParts(const SharedVertex& shared, const SkinWorkspace& workspace,
                 Eigen::Vector3f* position, Eigen::Vector3f* normal) const;
   void FillCoefficients(const VolumeFrame& frame,
@@ -110,11 +124,11 @@ class LayeredSkin : public Skin {
   TriangleMesh mesh_;
   std::shared_ptr<const SkinBinding> binding_;
   std::vector<Eigen::Vector3d> normals_;  // at rest
-  std::vector<kernel::VolumeRun> runs_;
+  PartRuns runs_;
   VertexBlocks vertices_;  // u, s, t and the normal's components
   std::vector<SharedVertex> shared_;
   std::vector<VolumeShare> parts_;
-  std::vector<kernel::VolumeRun> part_runs_;
+  PartRuns part_runs_;
   BlockRows part_rows_;  // parts_ sorted by volume, as kernel::kPartRows has it
   int part_block_count_ = 0;
   std::vector<int> part_offsets_;  // where the kernel's first sum of each is

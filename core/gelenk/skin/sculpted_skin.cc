@@ -240,20 +240,27 @@ void SculptedSkin::Deform(const ConstVectorView& positions,
                           SkinWorkspace& workspace,
                           VertexBlocks& blocks) const {
   skin_->Deform(positions, world_from_skeleton, workspace, blocks);
-  for (const Vertex& vertex : vertices_) {
-    const VolumePoint point = Evaluate(vertex, workspace.frame);
-    const Vector3d moved =
-        point.position -
-        workspace.frame.volume(vertex.volume).Position(vertex.plain_at);
-    const Vector3d normal =
-        vertex.share *
-            DeformedNormal(point, vertex.normal_components).normalized() +
-        (1 - vertex.share) * blocks.normal(vertex.slot).cast<double>();
-    blocks.Set(
-        vertex.slot,
-        blocks.position(vertex.slot) + (vertex.share * moved).cast<float>(),
-        normal.normalized().cast<float>());
-  }
+  ForParts(workspace, static_cast<int>(vertices_.size()),
+           kSingleVerticesPerPart, [&](int first, int end) {
+             for (int i = first; i < end; ++i) {
+               Sculpt(vertices_[i], workspace.frame, blocks);
+             }
+           });
+}
+
+void SculptedSkin::Sculpt(const Vertex& vertex, const VolumeFrame& frame,
+                          VertexBlocks& blocks) const {
+  const VolumePoint point = Evaluate(vertex, frame);
+  const Vector3d moved =
+      point.position - frame.volume(vertex.volume).Position(vertex.plain_at);
+  const Vector3d normal =
+      vertex.share *
+          DeformedNormal(point, vertex.normal_components).normalized() +
+      (1 - vertex.share) * blocks.normal(vertex.slot).cast<double>();
+  blocks.Set(
+      vertex.slot,
+      blocks.position(vertex.slot) + (vertex.share * moved).cast<float>(),
+      normal.normalized().cast<float>());
 }
 
 size_t SculptedSkin::ByteSize() const {

@@ -81,6 +81,9 @@ class SculptedSkin : public Skin {
 
   // Of the sculpted volume.
   VolumePoint Evaluate(const Vertex& vertex, const VolumeFrame& frame) const;
+  // Moves one vertex of a deformed skin.
+  void Sculpt(const Vertex& vertex, const VolumeFrame& frame,
+              VertexBlocks& blocks) const;
 
   std::shared_ptr<const LayeredSkin> skin_;
   std::vector<Sculpture> sculptures_;

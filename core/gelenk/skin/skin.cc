@@ -1,6 +1,7 @@
 #include "gelenk/skin/skin.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 namespace gelenk {
@@ -72,8 +73,25 @@ void Skin::DeformQuantized(const ConstVectorView& positions,
   Deform(positions, world_from_skeleton, workspace, workspace.blocks);
   blocks.Resize(block_count_);
   blocks.box = BoxAt(positions, world_from_skeleton);
-  functions_->quantize(workspace.blocks.data(), block_count_,
-                       GridOf(blocks.box), blocks.data());
+  const kernel::QuantizationGrid grid = GridOf(blocks.box);
+  ForParts(workspace, block_count_, kBlocksPerPart, [&](int first, int end) {
+    functions_->quantize(
+        workspace.blocks.data() + int64_t{kernel::kBlockFloats} * first,
+        end - first, grid,
+        blocks.data() + int64_t{kernel::kQuantizedBlockBytes} * first);
+  });
+}
+
+void Skin::ForParts(const SkinWorkspace& workspace, int count, int part_size,
+                    absl::FunctionRef<void(int first, int end)> work) const {
+  if (!workspace.parallel_for || vertex_count() < kParallelVertices ||
+      count <= part_size) {
+    work(0, count);
+    return;
+  }
+  workspace.parallel_for((count + part_size - 1) / part_size, [&](int part) {
+    work(part * part_size, std::min((part + 1) * part_size, count));
+  });
 }
 
 QuantizationBox Skin::BoxAt(const ConstVectorView& positions,

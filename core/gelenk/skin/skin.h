@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "absl/types/span.h"
+#include "gelenk/base/parallel_for.h"
 #include "gelenk/ik/instruction_set.h"
 #include "gelenk/kinematics/forward_kinematics.h"
 #include "gelenk/skeleton/pose.h"
@@ -23,8 +25,22 @@
 
 namespace gelenk {
 
+// Skins of fewer vertices are deformed on the calling thread: such a frame
+// takes some 50 us, and waking other threads takes 10 us or more.
+inline constexpr int kParallelVertices = 50000;
+// Those of a part: what it reads and writes stays in a core's own cache, and
+// runs for about as long as a thread takes to wake.
+inline constexpr int kVerticesPerPart = 8192;
+inline constexpr int kBlocksPerPart = kVerticesPerPart / kVerticesPerBlock;
+// Of vertices that are deformed one by one, which takes ten times as long.
+inline constexpr int kSingleVerticesPerPart = kVerticesPerPart / 8;
+
 // What the kinds of skins work in, by kind; reuse it from frame to frame.
 struct SkinWorkspace {
+  // Runs the parts of skins of kParallelVertices or more; empty: one after the
+  // other on the calling thread. The same bits either way.
+  ParallelFor parallel_for;
+
   VolumeFrame frame;
   std::vector<kernel::VolumeCoefficients> coefficients;
   WorldTransforms world_from_joints;
@@ -37,7 +53,6 @@ struct SkinWorkspace {
   std::vector<float> rows;
   std::vector<float> sums;
   VertexBlocks blocks;
-  QuantizedBlocks quantized;
   BlockRows parts;
 };
 
@@ -85,6 +100,12 @@ class Skin {
        int block_count, std::vector<Triangle> triangles,
        absl::Span<const Eigen::Vector3d> rest_positions,
        const Eigen::VectorXd& rest_pose);
+
+  // Runs work(first, end) for parts of `part_size` items that cover
+  // [0, count): in parallel when the skin is large and `workspace` can, else
+  // all as one part.
+  void ForParts(const SkinWorkspace& workspace, int count, int part_size,
+                absl::FunctionRef<void(int first, int end)> work) const;
 
   // Those that this processor runs fastest.
   const kernel::DeformFunctions& functions() const { return *functions_; }

@@ -23,14 +23,11 @@ Eigen::Vector3d QuantizedBlocks::normal(int slot) const {
   return FromOctahedral(bytes[lane], bytes[kVerticesPerBlock + lane]);
 }
 
-void QuantizedBlocks::CopySlot(const QuantizedBlocks& from, int from_slot,
-                               int to_slot) {
-  const uint8_t* source = from.blocks_[from_slot / kVerticesPerBlock].bytes;
-  uint8_t* target = blocks_[to_slot / kVerticesPerBlock].bytes;
-  const int source_lane = from_slot % kVerticesPerBlock;
-  const int target_lane = to_slot % kVerticesPerBlock;
+void QuantizedBlocks::SetSlot(const uint8_t* block, int lane, int slot) {
+  uint8_t* target = blocks_[slot / kVerticesPerBlock].bytes;
+  const int target_lane = slot % kVerticesPerBlock;
   const auto copy = [&](int row, int width) {
-    std::copy_n(source + row + source_lane * width, width,
+    std::copy_n(block + row + lane * width, width,
                 target + row + target_lane * width);
   };
   for (int k = 0; k < 3; ++k) copy(2 * k * kVerticesPerBlock, 2);

@@ -117,8 +117,8 @@ class QuantizedBlocks {
   Eigen::Vector3d position(int slot) const;
   Eigen::Vector3d normal(int slot) const;  // unit
 
-  // From another set of blocks in the same box.
-  void CopySlot(const QuantizedBlocks& from, int from_slot, int to_slot);
+  // From lane `lane` of a block in the same box.
+  void SetSlot(const uint8_t* block, int lane, int slot);
 
  private:
   struct alignas(64) Block {

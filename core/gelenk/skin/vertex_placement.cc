@@ -157,9 +157,8 @@ Placement VertexPlacer::InChain(const Vector3d& point, int chain) const {
 // By how much a link may be farther than another and still hold a point: its
 // stub lies before the bone, its bent volumes beside it, its caps at the ends.
 double VertexPlacer::Slack(int link) const {
-  const double section =
-      std::max(2 * rig_.link(link).half_extents_m.maxCoeff(),
-               rig_.link(link).cap_reach_m.maxCoeff());
+  const double section = std::max(2 * rig_.link(link).half_extents_m.maxCoeff(),
+                                  rig_.link(link).cap_reach_m.maxCoeff());
   return rig_.is_branch(link) ? section + 3 * rig_.start_spacing_m(link)
                               : section;
 }

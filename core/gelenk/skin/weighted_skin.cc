@@ -208,7 +208,10 @@ void WeightedSkin::Deform(const ConstVectorView& positions,
   }
   blocks.Resize(block_count());
   if (method_ == BlendMethod::kLinear) {
-    BlendLinearly(workspace, blocks);
+    ForParts(workspace, vertex_count(), kSingleVerticesPerPart,
+             [&](int first, int end) {
+               BlendLinearly(workspace, first, end, blocks);
+             });
     return;
   }
   workspace.dual_quaternions.resize(joint_count);
@@ -217,12 +220,16 @@ void WeightedSkin::Deform(const ConstVectorView& positions,
         DualQuaternionOf(workspace.world_from_bind[i].leftCols<3>(),
                          workspace.world_from_bind[i].col(3));
   }
-  BlendDualQuaternions(workspace, blocks);
+  ForParts(workspace, vertex_count(), kSingleVerticesPerPart,
+           [&](int first, int end) {
+             BlendDualQuaternions(workspace, first, end, blocks);
+           });
 }
 
 void WeightedSkin::BlendLinearly(const SkinWorkspace& workspace,
+                                 int first_vertex, int end_vertex,
                                  VertexBlocks& blocks) const {
-  for (int v = 0; v < vertex_count(); ++v) {
+  for (int v = first_vertex; v < end_vertex; ++v) {
     const int first = influences_ * v;
     Eigen::Matrix<float, 3, 4> blended =
         weights_[first] * workspace.world_from_bind[joints_[first]];
@@ -236,8 +243,9 @@ void WeightedSkin::BlendLinearly(const SkinWorkspace& workspace,
 }
 
 void WeightedSkin::BlendDualQuaternions(const SkinWorkspace& workspace,
+                                        int first_vertex, int end_vertex,
                                         VertexBlocks& blocks) const {
-  for (int v = 0; v < vertex_count(); ++v) {
+  for (int v = first_vertex; v < end_vertex; ++v) {
     const int first = influences_ * v;
     const DualQuaternion& pivot = workspace.dual_quaternions[joints_[first]];
     DualQuaternion blended = weights_[first] * pivot;

@@ -68,10 +68,10 @@ class WeightedSkin : public Skin {
                const TriangleMesh& mesh, const SkinWeights& weights,
                const Options& options);
 
-  void BlendLinearly(const SkinWorkspace& workspace,
-                     VertexBlocks& blocks) const;
-  void BlendDualQuaternions(const SkinWorkspace& workspace,
-                            VertexBlocks& blocks) const;
+  void BlendLinearly(const SkinWorkspace& workspace, int first_vertex,
+                     int end_vertex, VertexBlocks& blocks) const;
+  void BlendDualQuaternions(const SkinWorkspace& workspace, int first_vertex,
+                            int end_vertex, VertexBlocks& blocks) const;
 
   BlendMethod method_;
   int influences_;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "gelenk/skin/example_shapes.h"
 #include "gelenk/skin/layered_skin.h"
 #include "gelenk/skin/nurbs_skin.h"
@@ -25,6 +26,9 @@ void ExpectWarmFramesTakeNothing(const Skin& skin) {
     poses.push_back(RandomPoseWithinLimits(random, skin.skeleton()));
   }
   SkinWorkspace workspace;
+  workspace.parallel_for = [](int count, absl::FunctionRef<void(int)> part) {
+    for (int i = 0; i < count; ++i) part(i);
+  };
   VertexBlocks blocks;
   QuantizedBlocks quantized;
   int before = 0;
@@ -53,6 +57,15 @@ TEST(SkinAllocationTest, LayeredSkinWithMusclesAndBranches) {
   const auto rig = VolumeRig::Create(shape.skeleton, {}, muscles).value();
   const auto skin = LayeredSkin::Bind(*rig, shape.mesh).value();
   EXPECT_FALSE(VerticesOf(skin->binding(), BindingClass::kBlend).empty());
+  ExpectWarmFramesTakeNothing(*skin);
+}
+
+TEST(SkinAllocationTest, SkinsInParts) {
+  const SkinShape shape =
+      MakeSkinShape("humanoid", kParallelVertices * 6 / 5).value();
+  const auto rig = VolumeRig::Create(shape.skeleton).value();
+  const auto skin = LayeredSkin::Bind(*rig, shape.mesh).value();
+  ASSERT_GE(skin->vertex_count(), kParallelVertices);
   ExpectWarmFramesTakeNothing(*skin);
 }
 

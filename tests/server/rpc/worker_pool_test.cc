@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <set>
+#include <thread>
 #include <vector>
 
 #include "absl/synchronization/notification.h"
@@ -85,6 +86,54 @@ TEST(WorkerPoolTest, WorkMaySubmitWork) {
   })));
   both.WaitForNotification();
   EXPECT_EQ(done, 2);
+}
+
+// The second part waits for the first: somebody else must run that.
+TEST(WorkerPoolTest, IdleThreadsHelpWithParts) {
+  WorkerPool pool(2, 10, InstructionSet::kBaseline);
+  absl::Notification ran[2];
+  pool.RunParts(2, [&](int part) {
+    ran[part].Notify();
+    ran[1 - part].WaitForNotification();
+  });
+  EXPECT_TRUE(ran[0].HasBeenNotified());
+}
+
+TEST(WorkerPoolTest, BusyThreadsLeaveThePartsToTheCaller) {
+  absl::Notification go_on;
+  WorkerPool pool(1, 10, InstructionSet::kBaseline);
+  ASSERT_TRUE(pool.Submit(Doing([&] { go_on.WaitForNotification(); })));
+  std::vector<int> done;
+  pool.RunParts(5, [&](int part) { done.push_back(part); });
+  EXPECT_THAT(done, ElementsAre(0, 1, 2, 3, 4));
+  go_on.Notify();
+}
+
+// Loops from many threads at once, inside of work as well, among other work.
+TEST(WorkerPoolTest, EveryPartRunsOnce) {
+  constexpr int kLoops = 100;
+  constexpr int kParts = 20;
+  std::atomic<int> runs = 0;
+  {
+    WorkerPool pool(3, 1000, InstructionSet::kBaseline);
+    const auto loop = [&] {
+      std::vector<std::atomic<int>> counts(kParts);
+      pool.RunParts(kParts, [&](int part) { ++counts[part]; });
+      for (const std::atomic<int>& count : counts) EXPECT_EQ(count, 1);
+      ++runs;
+    };
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 3; ++t) {
+      threads.emplace_back([&] {
+        for (int i = 0; i < kLoops; ++i) {
+          loop();
+          ASSERT_TRUE(pool.Submit(Doing(loop)));
+        }
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+  }
+  EXPECT_EQ(runs, 2 * 3 * kLoops);
 }
 
 TEST(WorkerPoolTest, TakesWorkFromManyThreads) {
