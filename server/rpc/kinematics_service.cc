@@ -195,6 +195,16 @@ absl::Status GetServerInfo(const ServiceState& state,
   response->set_max_goals(kMaxGoals);
   response->set_max_message_bytes(limits.max_message_bytes);
   response->set_max_import_bytes(limits.max_import_bytes);
+  response->set_max_clips(limits.max_clips);
+  response->set_max_clip_bytes(static_cast<int64_t>(limits.max_clip_bytes));
+  response->set_max_clip_numbers(limits.max_clip_numbers);
+  response->set_max_clip_revisions(limits.max_clip_revisions);
+  response->set_max_recording_bytes(limits.max_recording_bytes);
+  response->set_max_skins(limits.max_skins);
+  response->set_max_skin_bytes(static_cast<int64_t>(limits.max_skin_bytes));
+  response->set_max_skin_vertices(limits.max_skin_vertices);
+  response->set_max_skin_triangles(limits.max_skin_triangles);
+  response->set_max_skin_revisions(limits.max_skin_revisions);
   return absl::OkStatus();
 }
 

@@ -172,7 +172,8 @@ absl::StatusOr<std::unique_ptr<StreamSlot>> StreamSlot::Attach(
   }
   event->set_kind(v1::StreamEvent::KIND_ATTACHED);
   event->set_slot(request.slot());
-  event->set_sequence_number((*session)->sequence_number());
+  slot->newest_number_ = (*session)->sequence_number();
+  event->set_sequence_number(slot->newest_number_);
   const std::string inexact =
       request.has_resume_from() ? InexactBecause(**session, *point) : "";
   if (!inexact.empty()) {
@@ -206,6 +207,11 @@ size_t StreamSlot::answer_bytes() const {
 }
 
 absl::Status StreamSlot::Take(const v1::TargetFrame& frame, absl::Time now) {
+  if (frame.sequence_number() <= newest_number_) {
+    ++out_of_order_count_;
+  } else {
+    newest_number_ = frame.sequence_number();
+  }
   if (absl::Status status = FrameFromProto(frame, input_); !status.ok()) {
     // The number is used up all the same, so that answers stay in order.
     absl::Status numbered =
@@ -273,6 +279,7 @@ void StreamSlot::AddTime(v1::PoseFrame* answer) {
     age_s = solved_.live->age_s + (by_arrival ? 0 : age_s_);
   }
   convert::ToProto(absl::Seconds(age_s), timing->mutable_age());
+  timing->set_out_of_order_count(out_of_order_count_);
 }
 
 void StreamSlot::AddExtras(v1::PoseFrame* answer) {

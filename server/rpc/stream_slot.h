@@ -89,6 +89,9 @@ class StreamSlot {
   bool has_capture_time_ = false;
   ClockOffset clock_offset_{kClockWindow_s};
   double age_s_ = 0;
+  // Of any frame, good or bad; those that were not above it are counted.
+  int64_t newest_number_ = 0;
+  int64_t out_of_order_count_ = 0;
   int64_t answered_ = 0;
 };
 

@@ -287,6 +287,25 @@ TEST_F(ConditionedSessionTest, EveryAnswerToATimedFrameTellsItsAge) {
   }
 }
 
+TEST_F(ConditionedSessionTest, FramesOutOfOrderAreDroppedAndCounted) {
+  const auto stream =
+      OpenStream({AttachRequest(CreateSession(ArmSessionRequest()))});
+  v1::StreamingSolveRequest request;
+  for (int number : {1, 2, 4, 3, 4, 5}) {
+    *request.add_frames() = ReachFrame(number);
+  }
+  ASSERT_TRUE(stream->Send(request));
+  const auto answers = stream->NextFrames(6);
+  ASSERT_EQ(answers.size(), 6u);
+  EXPECT_EQ(answers[2].timing().out_of_order_count(), 0);
+  for (int i : {3, 4}) {
+    EXPECT_THAT(answers[i].status().message(), HasSubstr("sequence_number"));
+    EXPECT_EQ(PositionsOf(answers[i]), PositionsOf(answers[2]));
+  }
+  EXPECT_EQ(answers[5].sequence_number(), 5);
+  EXPECT_EQ(answers[5].timing().out_of_order_count(), 2);
+}
+
 TEST_F(ConditionedSessionTest, BadConditioningIsNamed) {
   const auto refuse = [](const StreamConditioning& conditioning,
                          const char* words) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "tests/integration/service_test.h"
 #include "tests/testing/status_matchers.h"
 
@@ -184,6 +185,20 @@ TEST_F(KinematicsCallsTest, BadWorkspacesAreRefusedByField) {
   EXPECT_TRUE(Workspace(many, &status).empty());
   EXPECT_THAT(status,
               Fails(absl::StatusCode::kInvalidArgument, "sample_count"));
+}
+
+TEST_F(KinematicsCallsTest, TheServerTellsItsLimits) {
+  const auto info = Call(&v1::KinematicsService::Stub::GetServerInfo,
+                         v1::GetServerInfoRequest());
+  ASSERT_TRUE(info.ok()) << info.status();
+  // Every one is told: 0 is no limit that there is.
+  const auto* reflection = info->GetReflection();
+  const auto* descriptor = v1::ServerInfo::descriptor();
+  for (int i = 0; i < descriptor->field_count(); ++i) {
+    const auto* field = descriptor->field(i);
+    if (!absl::StartsWith(field->name(), "max_")) continue;
+    EXPECT_TRUE(reflection->HasField(*info, field)) << field->name();
+  }
 }
 
 }  // namespace
