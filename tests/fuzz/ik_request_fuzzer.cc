@@ -72,7 +72,7 @@ void CheckRoundTrip(const IkProblem& problem) {
   GELENK_FUZZ_CHECK(goals.ok());
   v1::Session again;
   convert::ToProto(*goals, again.mutable_goals());
-  GELENK_FUZZ_CHECK(again.SerializeAsString() == proto.SerializeAsString());
+  GELENK_FUZZ_CHECK(again.DebugString() == proto.DebugString());
 }
 
 void CheckAnswer(const Eigen::VectorXd& positions, const SolveReport& report,
