@@ -71,7 +71,7 @@ void SetRandomTarget(Random& random, const v1::Goal& goal,
 class Oracle {
  public:
   explicit Oracle(const v1::Session& session)
-      : goals_(*convert::FromProto(session.goals())) {}
+      : goals_(*convert::FromProto(session.goals(), nullptr)) {}
 
   void Apply(const v1::TargetFrame& frame) {
     goals_ = *convert::Merge(goals_, frame.goal_patch());

@@ -223,7 +223,7 @@ grpc::Status FakeSessionServer::CreateSession(
   }
   if (sessions_.count(name) > 0) return ToGrpc(absl::AlreadyExistsError(name));
   absl::StatusOr<std::vector<Goal>> goals =
-      convert::FromProto(request->session().goals());
+      convert::FromProto(request->session().goals(), nullptr);
   if (!goals.ok()) return ToGrpc(goals.status());
   FakeSession session;
   session.declared = *response;
@@ -293,7 +293,7 @@ v1::StreamEvent FakeSessionServer::Attach(const v1::AttachSession& attach,
     internal::v1::SessionContinuation continuation;
     if (!resume.continuation().empty() &&
         continuation.ParseFromString(resume.continuation())) {
-      session.goals = *convert::FromProto(continuation.goals());
+      session.goals = *convert::FromProto(continuation.goals(), nullptr);
       session.world_from_skeleton =
           convert::FromProto(continuation.world_from_skeleton());
     }

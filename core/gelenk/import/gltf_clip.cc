@@ -1,6 +1,7 @@
 #include "gelenk/import/gltf_clip.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -15,6 +16,36 @@ namespace {
 // Departures from rest that rounding in single precision makes, as a part of
 // the length.
 constexpr double kSinglePrecision = 1e-5;
+
+// Keys that are recorded frames are spaced evenly and so close; those that an
+// animator has set are not. Single precision rounds their times.
+constexpr double kShortestFrame = 1.0 / 1000;
+constexpr double kLongestFrame = 1.0 / 10;
+constexpr double kUnevenness = 1e-2;
+// So near to a whole rate the rate is meant.
+constexpr double kRateRounding = 1e-5;
+
+// The time from key to key of the channel with the most keys, where they are
+// frames; else 0.
+double FrameTimeOfKeys(const GltfAnimation& animation) {
+  const std::vector<double>* times = nullptr;
+  for (const GltfChannel& channel : animation.channels) {
+    if (times == nullptr || channel.times_s.size() > times->size()) {
+      times = &channel.times_s;
+    }
+  }
+  if (times == nullptr || times->size() < 3) return 0;
+  const double mean =
+      (times->back() - times->front()) / static_cast<double>(times->size() - 1);
+  if (mean < kShortestFrame || mean > kLongestFrame) return 0;
+  for (size_t k = 0; k < times->size(); ++k) {
+    const double even = times->front() + static_cast<double>(k) * mean;
+    if (std::abs((*times)[k] - even) > kUnevenness * mean) return 0;
+  }
+  const double rate = 1 / mean;
+  const double whole = std::round(rate);
+  return std::abs(rate - whole) <= kRateRounding * rate ? 1 / whole : mean;
+}
 
 // What is above a node, while it rests: scene = linear * local + position.
 struct Above {
@@ -125,7 +156,8 @@ absl::StatusOr<GltfClip> ClipFromGltf(const GltfAnimation& animation,
     }
   }
   absl::StatusOr<MotionClip> clip = MotionClip::Create(
-      import.skeleton, std::move(tracks), {.name = animation.name});
+      import.skeleton, std::move(tracks),
+      {.name = animation.name, .frame_time_s = FrameTimeOfKeys(animation)});
   if (!clip.ok()) return clip.status();
   GltfClip result{*std::move(clip), {}};
   if (translations.count > 0) {

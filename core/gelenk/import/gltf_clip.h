@@ -4,7 +4,8 @@
 // its keys become rotations from its rest. A free root has its keys in the
 // world, what is above it in the file (turned, scaled) included. Both are
 // linear maps of the keys, so that STEP, LINEAR and CUBICSPLINE stay exactly
-// what they are.
+// what they are. Keys that are spaced evenly, 10 to 1000 a second, are frames,
+// and tell the clip's frame time; otherwise it has none.
 #ifndef GELENK_IMPORT_GLTF_CLIP_H_
 #define GELENK_IMPORT_GLTF_CLIP_H_
 

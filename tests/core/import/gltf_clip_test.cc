@@ -140,9 +140,6 @@ TEST(GltfClipTest, JointsAreWhereTheSceneShowsThem) {
       kSinglePrecision);
 }
 
-// By appendix C of the format, a quarter of the way through two seconds: the
-// weights of value, out tangent, value, in tangent are 0.84375, 2 * 0.140625,
-// 0.15625 and 2 * -0.046875.
 TEST(GltfClipTest, ChannelsBindByIndexWhateverNodesAreCalled) {
   const std::string bytes = MovingFile().Gltf();
   const absl::StatusOr<GltfClip> named = ClipOf(bytes);
@@ -154,6 +151,34 @@ TEST(GltfClipTest, ChannelsBindByIndexWhateverNodesAreCalled) {
   }
 }
 
+double FrameTimeOfKeysAt(const std::vector<double>& times_s) {
+  const GltfDocument document = ReadGltf(MovingFile().Gltf()).value();
+  const GltfImport import = ImportGltf(document).value();
+  GltfChannel channel = {.node = 2, .times_s = times_s};
+  channel.values.setZero(4, static_cast<Eigen::Index>(times_s.size()));
+  channel.values.row(3).setOnes();
+  const absl::StatusOr<GltfClip> read =
+      ClipFromGltf({.channels = {channel}}, document, import);
+  EXPECT_TRUE(read.ok()) << read.status();
+  return read.ok() ? read->clip.properties().frame_time_s : -1;
+}
+
+TEST(GltfClipTest, EvenKeysAreFrames) {
+  std::vector<double> times_s;
+  for (int i = 0; i < 50; ++i) {
+    times_s.push_back(static_cast<double>(static_cast<float>(i) / 30.0F));
+  }
+  EXPECT_EQ(FrameTimeOfKeysAt(times_s), 1.0 / 30);
+  times_s[20] += 0.01;
+  EXPECT_EQ(FrameTimeOfKeysAt(times_s), 0);
+  // What an animator sets, and what is too little to tell.
+  EXPECT_EQ(FrameTimeOfKeysAt({0, 0.5, 1, 1.5}), 0);
+  EXPECT_EQ(FrameTimeOfKeysAt({0, 0.02}), 0);
+}
+
+// By appendix C of the format, a quarter of the way through two seconds: the
+// weights of value, out tangent, value, in tangent are 0.84375, 2 * 0.140625,
+// 0.15625 and 2 * -0.046875.
 TEST(GltfClipTest, CubicSplineIsExact) {
   File file;
   file.AddView(Bytes<float>({0, 2}));
