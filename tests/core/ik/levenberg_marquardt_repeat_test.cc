@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gelenk/ik/levenberg_marquardt_solver.h"
+#include "tests/core/ik/solve_answer.h"
 #include "tests/testing/example_skeletons.h"
 #include "tests/testing/ik_targets.h"
 #include "tests/testing/random_pose.h"
@@ -14,6 +15,7 @@
 namespace gelenk {
 namespace {
 
+using ::gelenk::testing::ExpectSameBits;
 using ::gelenk::testing::PandaArm;
 using ::gelenk::testing::PoseGoalsAt;
 using ::gelenk::testing::Random;
@@ -21,6 +23,7 @@ using ::gelenk::testing::RandomPose;
 using ::gelenk::testing::RandomPoseWithinLimits;
 using ::gelenk::testing::RandomSkeleton;
 using ::gelenk::testing::SkeletonRecipe;
+using ::gelenk::testing::SolveAnswer;
 using ::gelenk::testing::StartNear;
 using ::gelenk::testing::UniformIndex;
 
@@ -31,28 +34,12 @@ struct Request {
   Eigen::VectorXd start;
 };
 
-struct Answer {
-  Eigen::VectorXd positions;
-  SolveReport report;
-};
-
-Answer Ask(LevenbergMarquardtSolver& solver, const Request& request) {
-  Answer answer;
+SolveAnswer Ask(LevenbergMarquardtSolver& solver, const Request& request) {
+  SolveAnswer answer;
   answer.positions = request.start;
   solver.Solve(request.problem, request.options, request.from, answer.positions,
                answer.report);
   return answer;
-}
-
-void ExpectSameBits(const Answer& a, const Answer& b) {
-  EXPECT_EQ(a.positions, b.positions);
-  EXPECT_EQ(a.report.outcome, b.report.outcome);
-  EXPECT_EQ(a.report.iteration_count, b.report.iteration_count);
-  EXPECT_EQ(a.report.restart_count, b.report.restart_count);
-  EXPECT_EQ(a.report.position_errors_m, b.report.position_errors_m);
-  EXPECT_EQ(a.report.rotation_errors_rad, b.report.rotation_errors_rad);
-  EXPECT_EQ(a.report.limited_joints, b.report.limited_joints);
-  EXPECT_EQ(a.report.change, b.report.change);
 }
 
 // Trees of all sizes, warm and cold, within reach and out of it.
@@ -81,7 +68,7 @@ std::vector<Request> Requests() {
 TEST(RepeatTest, SameRequestSameBits) {
   const std::vector<Request> requests = Requests();
   LevenbergMarquardtSolver old;
-  std::vector<Answer> first;
+  std::vector<SolveAnswer> first;
   for (const Request& request : requests) first.push_back(Ask(old, request));
   // By then the solver's memory holds traces of all of them.
   for (size_t i = 0; i < requests.size(); ++i) {
@@ -123,7 +110,7 @@ TEST(RepeatTest, RestartsFollowTheirSeed) {
         SolveStart::kCold,
         start};
     request.options.restart_seed = 5;
-    const Answer first = Ask(solver, request);
+    const SolveAnswer first = Ask(solver, request);
     ExpectSameBits(first, Ask(solver, request));
     if (first.report.restart_count == 0) continue;
     ++restarted;
@@ -150,11 +137,11 @@ TEST(RepeatTest, InstructionSetsAgree) {
         SolveStart::kWarm,
         StartNear(random, *skeleton, truth, 0.1)};
     LevenbergMarquardtSolver baseline(InstructionSet::kBaseline);
-    const Answer want = Ask(baseline, request);
+    const SolveAnswer want = Ask(baseline, request);
     for (InstructionSet level : SupportedInstructionSets()) {
       LevenbergMarquardtSolver solver(level);
       EXPECT_EQ(solver.instruction_set(), level);
-      const Answer got = Ask(solver, request);
+      const SolveAnswer got = Ask(solver, request);
       EXPECT_EQ(got.report.outcome, want.report.outcome);
       if (want.positions.size() == 0) continue;
       EXPECT_LE((got.positions - want.positions).cwiseAbs().maxCoeff(),

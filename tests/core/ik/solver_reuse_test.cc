@@ -17,6 +17,7 @@
 #include "gelenk/ik/batch_solver.h"
 #include "gelenk/ik/ik_solver.h"
 #include "gelenk/skeleton/skeleton_builder.h"
+#include "tests/core/ik/solve_answer.h"
 #include "tests/testing/ik_targets.h"
 #include "tests/testing/random_goals.h"
 #include "tests/testing/random_pose.h"
@@ -26,6 +27,7 @@ namespace gelenk {
 namespace {
 
 using ::gelenk::testing::EffectorPose;
+using ::gelenk::testing::ExpectSameBits;
 using ::gelenk::testing::kGoalKindCount;
 using ::gelenk::testing::PositionGoalFor;
 using ::gelenk::testing::Random;
@@ -35,6 +37,7 @@ using ::gelenk::testing::RandomPose;
 using ::gelenk::testing::RandomPoseWithinLimits;
 using ::gelenk::testing::RandomSkeletonBuilder;
 using ::gelenk::testing::SkeletonRecipe;
+using ::gelenk::testing::SolveAnswer;
 using ::gelenk::testing::StartNear;
 using ::gelenk::testing::Uniform;
 using ::gelenk::testing::UniformIndex;
@@ -154,29 +157,13 @@ Request AnyRequest(Random& random) {
   return request;
 }
 
-struct Answer {
-  Eigen::VectorXd positions;
-  SolveReport report;
-};
-
-Answer Ask(IkSolver& solver, const Request& request, double litter) {
-  Answer answer;
+SolveAnswer Ask(IkSolver& solver, const Request& request, double litter) {
+  SolveAnswer answer;
   answer.positions = request.start;
   LitterStack(litter);
   solver.Solve(request.problem, request.options, request.from, answer.positions,
                answer.report, request.bounds ? &*request.bounds : nullptr);
   return answer;
-}
-
-void ExpectSameBits(const Answer& a, const Answer& b) {
-  EXPECT_EQ(a.positions, b.positions);
-  EXPECT_EQ(a.report.outcome, b.report.outcome);
-  EXPECT_EQ(a.report.iteration_count, b.report.iteration_count);
-  EXPECT_EQ(a.report.restart_count, b.report.restart_count);
-  EXPECT_EQ(a.report.position_errors_m, b.report.position_errors_m);
-  EXPECT_EQ(a.report.rotation_errors_rad, b.report.rotation_errors_rad);
-  EXPECT_EQ(a.report.limited_joints, b.report.limited_joints);
-  EXPECT_EQ(a.report.change, b.report.change);
 }
 
 TEST(SolverReuseTest, AnAnswerIsThatOfAFreshSolver) {
@@ -192,7 +179,7 @@ TEST(SolverReuseTest, AnAnswerIsThatOfAFreshSolver) {
     const Request request = AnyRequest(random);
     for (IkSolver& old : reused) {
       IkSolver fresh(old.instruction_set());
-      const Answer want = Ask(fresh, request, 0);
+      const SolveAnswer want = Ask(fresh, request, 0);
       ExpectSameBits(want, Ask(old, request, kLitter[i % 4]));
       // The report is reused, too.
       ExpectSameBits(want, Ask(old, request, kLitter[(i + 1) % 4]));
