@@ -31,22 +31,22 @@ absl::StatusOr<Reach> AskForReach(client::Connection& connection,
   connection.Prepare(options, context);
   const auto reader =
       connection.kinematics().ComputeWorkspace(&context, request);
-  Reach reach;
+  absl::StatusOr<Reach> reach = Reach();
   v1::ComputeWorkspaceResponse part;
   while (reader->Read(&part)) {
     if (part.has_annulus()) {
-      reach.annulus = PlanarAnnulus{
+      reach->annulus = PlanarAnnulus{
           convert::FromProto(part.annulus().world_center()),
           convert::FromProto(part.annulus().world_normal()),
           part.annulus().inner_radius_m(), part.annulus().outer_radius_m()};
     } else if (part.has_grid()) {
       const v1::VoxelGrid& grid = part.grid();
-      reach.map.world_min = convert::FromProto(grid.world_min());
-      reach.map.voxel_size_m = grid.voxel_size_m();
-      reach.map.size = {grid.size_x(), grid.size_y(), grid.size_z()};
-      reach.map.sample_count = grid.sample_count();
+      reach->map.world_min = convert::FromProto(grid.world_min());
+      reach->map.voxel_size_m = grid.voxel_size_m();
+      reach->map.size = {grid.size_x(), grid.size_y(), grid.size_z()};
+      reach->map.sample_count = grid.sample_count();
     } else {
-      Append(part.voxels(), reach.map);
+      Append(part.voxels(), reach->map);
     }
   }
   const grpc::Status status = reader->Finish();

@@ -74,7 +74,7 @@ class AsfParser {
     scanner_.SkipToToken();
     return scanner_.TakeKeyword(keyword);
   }
-  void Warn(std::string text) { document_.warnings.push_back(std::move(text)); }
+  void Warn(absl::string_view text) { document_.warnings.emplace_back(text); }
 
   const BvhBounds bounds_;
   AsfScanner scanner_;

@@ -209,7 +209,7 @@ class JointMapProposal {
     map_.neck =
         ChainBelow(skeleton_, map_.joint(top), map_.joint(BodyRole::kHead));
     if (map_.neck.empty()) {
-      map_.notes.push_back("the head is not above the chest");
+      map_.notes.emplace_back("the head is not above the chest");
       map_.roles[IndexOf(BodyRole::kHead)] = {};
       return;
     }
