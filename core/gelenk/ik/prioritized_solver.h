@@ -46,8 +46,8 @@ class PrioritizedSolver {
  private:
   // How far the levels of an attempt got.
   struct Levels {
-    kernel::AttemptEnd end;
-    bool pushed_at_limit;
+    kernel::AttemptEnd end = kernel::AttemptEnd::kIterations;
+    bool pushed_at_limit = false;
     std::vector<double> energies;
   };
 
