@@ -101,7 +101,8 @@ Eigen::MatrixXd FramesBehindARestPose(const MotionClip& clip) {
   // An arm that hangs in the walk, raised to the side and on its way down.
   const int arm = clip.skeleton()->FindJoint("LeftArm");
   const int offset = clip.skeleton()->span(arm).quaternion_offset;
-  const Eigen::Quaterniond hanging(frames.col(1).segment<4>(offset));
+  const Eigen::VectorXd first = walk.col(0);
+  const Eigen::Quaterniond hanging(first.segment<4>(offset));
   for (int f : {0, 1}) {
     const Eigen::AngleAxisd raised((2 - f) * std::numbers::pi / 4,
                                    Eigen::Vector3d::UnitZ());
