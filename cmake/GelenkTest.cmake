@@ -6,10 +6,12 @@
 # included from its root ("tests/testing/random_pose.h").
 #
 # Labels in use: unit, integration, architecture, concurrent (also run under
-# ThreadSanitizer), fuzz (readers on broken input), soak (only with `./dev soak`), corpus (on files that are not
-# part of the project; skipped where they are not found). The target LABEL_tests
-# builds the tests of one label and what they need. GELENK_TEST_PRECOMPILED is the
-# target whose precompiled headers the tests of a folder reuse.
+# ThreadSanitizer), fuzz (readers on broken input), soak (only with `./dev soak`),
+# corpus (on files that are not part of the project; skipped where they are not
+# found). The target LABEL_tests builds the tests of one label and what they need.
+#
+# GELENK_TEST_PRECOMPILED is the target whose precompiled headers the tests of a
+# folder reuse.
 find_package(GTest CONFIG REQUIRED)
 
 # What tests exercise is in the libraries, and optimised; themselves they are to
