@@ -16,6 +16,9 @@ using google::protobuf::MessageLite;
 // A length of 32 bits takes five bytes of seven.
 constexpr int kMaxLengthShift = 28;
 
+// A length of 0 in place of a frame's.
+constexpr absl::string_view kEnd("\0", 1);
+
 // Takes message after message.
 class MessageReader {
  public:
@@ -116,16 +119,19 @@ absl::Status ReadFrame(MessageReader& reader, uint32_t length,
 
 }  // namespace
 
-absl::StatusOr<SessionLog> ParseSessionLog(absl::string_view bytes) {
-  if (bytes.size() > kMaxLogBytes) {
-    return absl::ResourceExhaustedError(absl::StrCat(
-        "want a log of at most ", kMaxLogBytes, " bytes, got ", bytes.size()));
+absl::StatusOr<SessionLog> ParseSessionLog(absl::string_view bytes,
+                                           const SessionLogLimits& limits) {
+  if (bytes.size() > limits.max_bytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("want a log of at most ", limits.max_bytes, " bytes, got ",
+                     bytes.size()));
   }
   if (!absl::StartsWith(bytes, kSessionLogMagic)) {
     return absl::InvalidArgumentError(
         "is no log of gelenk play --record, or one of another version");
   }
   SessionLog log;
+  log.frames = FrameLog<v1::TargetFrame>(limits.max_frames);
   MessageReader reader(bytes.substr(kSessionLogMagic.size()));
   absl::Status status = ReadHead(reader, log);
   if (!status.ok()) return status;
@@ -149,24 +155,23 @@ absl::StatusOr<SessionLog> ReadSessionLog(const std::string& path) {
   return log;
 }
 
-SessionLogWriter::SessionLogWriter(std::string path, FILE* file)
-    : path_(std::move(path)), file_(file) {}
+SessionLogWriter::SessionLogWriter(std::string path, FILE* file,
+                                   const SessionLogLimits& limits)
+    : path_(std::move(path)), limits_(limits), file_(file) {}
 
 absl::StatusOr<std::unique_ptr<SessionLogWriter>> SessionLogWriter::Open(
     const std::string& path, const v1::ServerInfo& server,
-    const client::SessionSpec& spec) {
+    const client::SessionSpec& spec, const SessionLogLimits& limits) {
   FILE* file = std::fopen(path.c_str(), "wb");
   if (file == nullptr) {
     return absl::ErrnoToStatus(errno, absl::StrCat("\"", path, "\""));
   }
-  std::unique_ptr<SessionLogWriter> writer(new SessionLogWriter(path, file));
+  std::unique_ptr<SessionLogWriter> writer(
+      new SessionLogWriter(path, file, limits));
   absl::Status status = writer->Write(kSessionLogMagic);
-  for (const MessageLite* message :
-       {static_cast<const MessageLite*>(&server),
-        static_cast<const MessageLite*>(&spec.skeleton),
-        static_cast<const MessageLite*>(&spec.source_skeleton),
-        static_cast<const MessageLite*>(&spec.session)}) {
-    if (status.ok()) status = writer->WriteMessage(*message);
+  if (status.ok()) {
+    status = writer->WriteMessages(
+        {&server, &spec.skeleton, &spec.source_skeleton, &spec.session});
   }
   if (!status.ok()) return status;
   return writer;
@@ -174,35 +179,49 @@ absl::StatusOr<std::unique_ptr<SessionLogWriter>> SessionLogWriter::Open(
 
 absl::Status SessionLogWriter::Append(const v1::TargetFrame& effective_frame,
                                       const v1::PoseFrame& answer) {
-  if (frame_count_ == kMaxLoggedFrames) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("\"", path_, "\": want at most ", kMaxLoggedFrames,
-                     " frames in a log"));
+  if (frame_count_ == limits_.max_frames) {
+    return Full(absl::StrCat(limits_.max_frames, " frames"));
   }
   // What a replay needs.
   v1::PoseFrame kept;
   kept.set_sequence_number(answer.sequence_number());
   *kept.mutable_pose() = answer.pose();
-  absl::Status status = WriteMessage(effective_frame);
-  if (status.ok()) status = WriteMessage(kept);
+  absl::Status status = WriteMessages({&effective_frame, &kept});
   if (status.ok()) ++frame_count_;
   return status;
 }
 
 absl::Status SessionLogWriter::Close() {
-  absl::Status status = Write(absl::string_view("\0", 1));
+  absl::Status status = Write(kEnd);
   if (status.ok() && std::fflush(file_.get()) != 0) {
     return absl::ErrnoToStatus(errno, absl::StrCat("\"", path_, "\""));
   }
   return status;
 }
 
-absl::Status SessionLogWriter::Write(absl::string_view bytes) {
-  // The end mark must have room.
-  if (byte_count_ + bytes.size() > kMaxLogBytes) {
-    return absl::ResourceExhaustedError(absl::StrCat(
-        "\"", path_, "\": want at most ", kMaxLogBytes, " bytes in a log"));
+absl::Status SessionLogWriter::WriteMessages(
+    absl::Span<const MessageLite* const> messages) {
+  std::string bytes;
+  for (const MessageLite* message : messages) {
+    const size_t size = message->ByteSizeLong();
+    if (size > kMaxLoggedMessageBytes) {
+      return absl::ResourceExhaustedError(
+          absl::StrCat("\"", path_, "\": a message of ", size,
+                       " bytes, want at most ", kMaxLoggedMessageBytes));
+    }
+    for (size_t rest = size;; rest >>= 7) {
+      bytes.push_back(static_cast<char>(rest < 0x80 ? rest : rest | 0x80));
+      if (rest < 0x80) break;
+    }
+    message->AppendToString(&bytes);
   }
+  if (byte_count_ + bytes.size() + kEnd.size() > limits_.max_bytes) {
+    return Full(absl::StrCat(limits_.max_bytes, " bytes"));
+  }
+  return Write(bytes);
+}
+
+absl::Status SessionLogWriter::Write(absl::string_view bytes) {
   byte_count_ += bytes.size();
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size()) {
     return absl::OkStatus();
@@ -210,20 +229,9 @@ absl::Status SessionLogWriter::Write(absl::string_view bytes) {
   return absl::ErrnoToStatus(errno, absl::StrCat("\"", path_, "\""));
 }
 
-absl::Status SessionLogWriter::WriteMessage(const MessageLite& message) {
-  const size_t size = message.ByteSizeLong();
-  if (size > kMaxLoggedMessageBytes) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("\"", path_, "\": a message of ", size,
-                     " bytes, want at most ", kMaxLoggedMessageBytes));
-  }
-  std::string bytes;
-  for (size_t rest = size;; rest >>= 7) {
-    bytes.push_back(static_cast<char>(rest < 0x80 ? rest : rest | 0x80));
-    if (rest < 0x80) break;
-  }
-  message.AppendToString(&bytes);
-  return Write(bytes);
+absl::Status SessionLogWriter::Full(absl::string_view limit) const {
+  return absl::ResourceExhaustedError(
+      absl::StrCat("\"", path_, "\": want at most ", limit, " in a log"));
 }
 
 }  // namespace gelenk::cli

@@ -22,6 +22,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "absl/types/span.h"
 #include "gelenk/client/session_spec.h"
 #include "gelenk/motion/frame_log.h"
 #include "gelenk/v1/kinematics_service.pb.h"
@@ -37,6 +38,11 @@ inline constexpr uint32_t kMaxLoggedMessageBytes = 64 << 20;
 // It is held in memory.
 inline constexpr size_t kMaxLogBytes = size_t{1} << 30;
 
+struct SessionLogLimits {
+  int max_frames = kMaxLoggedFrames;
+  size_t max_bytes = kMaxLogBytes;
+};
+
 struct SessionLog {
   // What solved it.
   v1::ServerInfo server;
@@ -47,8 +53,9 @@ struct SessionLog {
 };
 
 // INVALID_ARGUMENT naming the byte where `bytes` is no log, or ends too early;
-// RESOURCE_EXHAUSTED beyond the limits above. Cost: linear.
-absl::StatusOr<SessionLog> ParseSessionLog(absl::string_view bytes);
+// RESOURCE_EXHAUSTED beyond the limits. Cost: linear.
+absl::StatusOr<SessionLog> ParseSessionLog(absl::string_view bytes,
+                                           const SessionLogLimits& limits = {});
 
 // Errors name the file.
 absl::StatusOr<SessionLog> ReadSessionLog(const std::string& path);
@@ -60,10 +67,10 @@ class SessionLogWriter {
   // Replaces what was at `path`. Errors name it.
   static absl::StatusOr<std::unique_ptr<SessionLogWriter>> Open(
       const std::string& path, const v1::ServerInfo& server,
-      const client::SessionSpec& spec);
+      const client::SessionSpec& spec, const SessionLogLimits& limits = {});
 
-  // RESOURCE_EXHAUSTED after kMaxLoggedFrames, or for a frame that no reader
-  // takes.
+  // RESOURCE_EXHAUSTED where the log is full, or for a frame that no reader
+  // takes: nothing of it is written, and Close makes a log of those before.
   absl::Status Append(const v1::TargetFrame& effective_frame,
                       const v1::PoseFrame& answer);
   absl::Status Close();
@@ -73,11 +80,16 @@ class SessionLogWriter {
     void operator()(FILE* file) const { std::fclose(file); }
   };
 
-  SessionLogWriter(std::string path, FILE* file);
+  SessionLogWriter(std::string path, FILE* file,
+                   const SessionLogLimits& limits);
+  // All of them or none, and leaves room for the end.
+  absl::Status WriteMessages(
+      absl::Span<const google::protobuf::MessageLite* const> messages);
   absl::Status Write(absl::string_view bytes);
-  absl::Status WriteMessage(const google::protobuf::MessageLite& message);
+  absl::Status Full(absl::string_view limit) const;
 
   const std::string path_;
+  const SessionLogLimits limits_;
   const std::unique_ptr<FILE, CloseFile> file_;
   size_t byte_count_ = 0;
   int frame_count_ = 0;

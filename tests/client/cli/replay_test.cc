@@ -130,6 +130,43 @@ TEST_F(ReplayTest, FramesOutOfOrderAreRefused) {
               Fails(kInvalid, "frame 0: the answer is that of"));
 }
 
+TEST_F(ReplayTest, AFullLogKeepsWhatItHas) {
+  const size_t whole = Bytes().size();
+  for (const SessionLogLimits limits :
+       {SessionLogLimits{.max_frames = 2}, SessionLogLimits{.max_bytes = whole},
+        SessionLogLimits{.max_frames = 1},
+        SessionLogLimits{.max_bytes = whole - 1}}) {
+    const int room = limits.max_frames == 1 || limits.max_bytes < whole ? 1 : 2;
+    auto writer = *SessionLogWriter::Open(path_, server_, spec_, limits);
+    EXPECT_TRUE(writer->Append(FrameTo(3, 0.1), AnswerOf(3, 0.5)).ok());
+    EXPECT_EQ(writer->Append(FrameTo(7, 0.2), AnswerOf(7, 0.25)).ok(),
+              room == 2);
+    EXPECT_THAT(
+        writer->Append(FrameTo(8, 0.2), AnswerOf(8, 0.25)),
+        Fails(absl::StatusCode::kResourceExhausted,
+              limits.max_frames < 3
+                  ? absl::StrCat("want at most ", room, " frames")
+                  : absl::StrCat("want at most ", limits.max_bytes, " bytes")));
+    EXPECT_EQ(writer->Close(), absl::OkStatus());
+    const auto log = ReadSessionLog(path_);
+    ASSERT_TRUE(log.ok()) << log.status();
+    EXPECT_EQ(log->frames.frames().size(), room);
+  }
+}
+
+TEST_F(ReplayTest, ALogBeyondTheLimitsIsRefused) {
+  const std::string bytes = Bytes();
+  const int size = static_cast<int>(bytes.size());
+  EXPECT_TRUE(ParseSessionLog(bytes, {.max_frames = 2}).ok());
+  EXPECT_TRUE(ParseSessionLog(bytes, {.max_bytes = bytes.size()}).ok());
+  EXPECT_THAT(
+      ParseSessionLog(bytes, {.max_frames = 1}).status(),
+      Fails(absl::StatusCode::kResourceExhausted, "want at most 1 in a log"));
+  EXPECT_THAT(ParseSessionLog(bytes, {.max_bytes = bytes.size() - 1}).status(),
+              Fails(absl::StatusCode::kResourceExhausted,
+                    absl::StrCat("at most ", size - 1, " bytes, got ", size)));
+}
+
 class RecorderTest : public ReplayTest {
  protected:
   void SetUp() override {
