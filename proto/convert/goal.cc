@@ -141,6 +141,7 @@ absl::StatusOr<std::vector<Goal>> Merge(absl::Span<const Goal> goals,
         found != merged.end() && proto.kind_case() == v1::Goal::KIND_NOT_SET;
     if (keeps_kind) {
       if (proto.has_weight()) found->weight = proto.weight();
+      if (proto.priority() != 0) found->priority = proto.priority();
       continue;
     }
     absl::StatusOr<Goal> goal = FromProto(proto);

@@ -338,6 +338,16 @@ TEST_F(GoalPatchTest, KeepsTheKindWhereOnlyTheWeightIsSet) {
   EXPECT_EQ(std::get<PositionGoal>(changed.kind).world_position.x(), 1);
 }
 
+TEST_F(GoalPatchTest, MovesAGoalToAnotherPriority) {
+  v1::Goal* goal = patch_.add_goals();
+  goal->set_goal_id("a");
+  goal->set_priority(2);
+  const Goal changed = Merged().value()[0];
+  EXPECT_EQ(changed.priority, 2);
+  EXPECT_EQ(changed.weight, goals_[0].weight);
+  EXPECT_TRUE(std::holds_alternative<PositionGoal>(changed.kind));
+}
+
 TEST_F(GoalPatchTest, KeepsTheWeightWhereOnlyTheKindIsSet) {
   v1::Goal* goal = patch_.add_goals();
   *goal = RotationMessage("a");
