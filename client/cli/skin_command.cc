@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/cli/command.h"
 #include "client/cli/file_bytes.h"
+#include "client/cli/patient_call.h"
 #include "client/cli/picture/mesh_picture.h"
 #include "client/cli/service.h"
 #include "client/cli/skin/binding_text.h"

@@ -5,6 +5,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/string_view.h"
 #include "client/cli/file_bytes.h"
+#include "client/cli/patient_call.h"
 #include "client/cli/skeleton_file.h"
 #include "client/cli/unique_id.h"
 #include "convert/joint_track.h"
@@ -21,13 +22,6 @@ using Stub = v1::MotionService::Stub;
 
 // A quarter of what a message may hold.
 constexpr size_t kPieceBytes = size_t{1} << 20;
-
-// Long clips take a while.
-client::CallOptions PatientCall() {
-  client::CallOptions options;
-  options.timeout = absl::Minutes(5);
-  return options;
-}
 
 absl::StatusOr<v1::Clip> SendInPieces(client::Connection& connection,
                                       const v1::CreateClipRequest& header,

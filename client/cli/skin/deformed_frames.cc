@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "client/cli/patient_call.h"
 #include "client/cli/skin/served_skin.h"
 #include "gelenk/skin/vertex_stream.h"
 

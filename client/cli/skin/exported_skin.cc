@@ -1,5 +1,6 @@
 #include "client/cli/skin/exported_skin.h"
 
+#include "client/cli/patient_call.h"
 #include "client/cli/skin/served_skin.h"
 #include "convert/duration.h"
 

@@ -3,15 +3,10 @@
 #include <utility>
 
 #include "absl/strings/match.h"
+#include "client/cli/skin/skin_sending.h"
 #include "client/cli/unique_id.h"
 
 namespace gelenk::cli {
-
-client::CallOptions PatientCall() {
-  client::CallOptions options;
-  options.timeout = absl::Minutes(5);
-  return options;
-}
 
 absl::StatusOr<std::unique_ptr<ServedSkin>> ServedSkin::Open(
     std::shared_ptr<client::Connection> connection,
@@ -77,8 +72,7 @@ absl::Status ServedSkin::Create(const SkinSourceOptions& options,
     temporary_skeleton_ = created->name();
     request.mutable_skin()->set_skeleton(created->name());
   }
-  absl::StatusOr<v1::Skin> created =
-      connection_->Call(&SkinStub::CreateSkin, request, PatientCall());
+  absl::StatusOr<v1::Skin> created = SendSkin(*connection_, std::move(request));
   if (!created.ok()) return created.status();
   skin_ = *std::move(created);
   temporary_skin_ = keep_id.empty() ? skin_.name() : "";

@@ -15,9 +15,6 @@ namespace gelenk::cli {
 
 using SkinStub = v1::SkinService::Stub;
 
-// Binding a large mesh takes a while.
-client::CallOptions PatientCall();
-
 class ServedSkin {
  public:
   // `source.path` may also name a skin: skins/{skin}, with a revision or

@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/file_bytes.h"
+#include "client/cli/patient_call.h"
 #include "client/cli/picture/mesh_picture.h"
 #include "client/cli/skin/deformed_frames.h"
 #include "client/cli/skin/exported_skin.h"
