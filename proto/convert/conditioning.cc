@@ -93,6 +93,13 @@ absl::StatusOr<ConditioningOptions> FromProto(
   if (proto.has_ease_duration()) {
     options.ease_s = absl::ToDoubleSeconds(FromProto(proto.ease_duration()));
   }
+  if (proto.has_fill_interval()) {
+    options.fill_interval_s =
+        absl::ToDoubleSeconds(FromProto(proto.fill_interval()));
+    if (options.fill_interval_s == 0) {
+      violations.Add("fill_interval", "want more than 0 s, or unset");
+    }
+  }
   if (!violations.empty()) return violations.ToStatus();
   return options;
 }
@@ -111,6 +118,10 @@ void ToProto(const ConditioningOptions& options,
   ToProto(absl::Seconds(options.max_extrapolation_s),
           proto->mutable_extrapolation_limit());
   ToProto(absl::Seconds(options.ease_s), proto->mutable_ease_duration());
+  if (options.fill_interval_s > 0) {
+    ToProto(absl::Seconds(options.fill_interval_s),
+            proto->mutable_fill_interval());
+  }
 }
 
 v1::FrameTiming::Source SourceToProto(LiveStatus::State state) {

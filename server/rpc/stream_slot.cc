@@ -19,6 +19,12 @@
 namespace gelenk::server {
 namespace {
 
+// A pose whose numbers (m, rad, quaternions) change by no more a second stands
+// still.
+constexpr double kStillSpeed = 1e-3;
+// What follows a source that stands still, feet that settle say, gets so long.
+constexpr absl::Duration kSettling = absl::Seconds(1);
+
 absl::Status CheckAttach(const v1::AttachSession& request) {
   Violations violations;
   violations.AddStatus(
@@ -82,6 +88,12 @@ absl::Status CheckAffinity(const Session& session, const Session* neighbour) {
   return absl::FailedPreconditionError(absl::StrCat(
       "attach.session: ", session.name(), " has affinity key \"",
       session.affinity_key(), "\", the stream's sessions another one"));
+}
+
+absl::Duration FillIntervalOf(const SessionInput& input) {
+  return input.conditioning == nullptr
+             ? absl::ZeroDuration()
+             : absl::Seconds(input.conditioning->options().fill_interval_s);
 }
 
 // Where a client says that it was.
@@ -192,7 +204,8 @@ StreamSlot::StreamSlot(const ServiceState& state,
       every_frame_(request.frame_policy() == v1::FRAME_POLICY_EVERY_FRAME),
       include_joint_frames_(request.include_joint_frames()),
       report_interval_(std::max(1, request.report_interval())),
-      continuation_interval_(std::max(1, request.continuation_interval())) {}
+      continuation_interval_(std::max(1, request.continuation_interval())),
+      fill_interval_(FillIntervalOf(session_->input())) {}
 
 StreamSlot::~StreamSlot() { session_->Release(driver_); }
 
@@ -220,7 +233,12 @@ absl::Status StreamSlot::Take(const v1::TargetFrame& frame, absl::Time now) {
   }
   if (absl::Status status = session_->Apply(driver_, input_, now);
       !status.ok()) {
+    if (absl::IsOutOfRange(status)) ++out_of_order_count_;
     return status;
+  }
+  if (fills()) {
+    fill_time_ = now + fill_interval_;
+    moving_until_ = now + kSettling;
   }
   ++taken_;
   sequence_number_ = frame.sequence_number();
@@ -239,8 +257,53 @@ void StreamSlot::NoteAge(absl::Duration capture_time, absl::Time arrival) {
   age_s_ = std::max(0.0, arrival_s - capture_s - *clock_offset_.offset_s());
 }
 
+absl::Duration StreamSlot::CaptureTimeAt(absl::Time now) const {
+  const double now_s = absl::ToDoubleSeconds(now - absl::UnixEpoch());
+  // Never back, should the clocks drift apart.
+  return std::max(absl::Seconds(now_s - clock_offset_.offset_s().value_or(0)),
+                  convert::FromProto(capture_time_) + absl::Microseconds(1));
+}
+
+absl::Status StreamSlot::Fill(IkSolver& solver, absl::Time now,
+                              v1::PoseFrame* answer) {
+  fill_time_.reset();
+  const absl::Duration capture_time = CaptureTimeAt(now);
+  input_.Clear();
+  input_.is_fill = true;
+  input_.capture_time = capture_time;
+  if (absl::Status status = session_->Apply(driver_, input_, now);
+      !status.ok()) {
+    return status;
+  }
+  convert::ToProto(capture_time, &capture_time_);
+  age_s_ = 0;
+  session_->CopyPositions(positions_before_);
+  if (absl::Status status = Solve(solver, now, answer); !status.ok()) {
+    return status;
+  }
+  answer->mutable_timing()->set_filled(true);
+  if (!solved_.live->is_settled) moving_until_ = now + kSettling;
+  const double change =
+      (solved_.positions - positions_before_).lpNorm<Eigen::Infinity>();
+  const bool is_still =
+      solved_.live->is_settled &&
+      change <= kStillSpeed * absl::ToDoubleSeconds(fill_interval_);
+  if (!is_still && now < moving_until_) fill_time_ = now + fill_interval_;
+  return absl::OkStatus();
+}
+
 absl::Status StreamSlot::Answer(IkSolver& solver, absl::Time read_time,
                                 v1::PoseFrame* answer) {
+  if (absl::Status status = Solve(solver, read_time, answer); !status.ok()) {
+    return status;
+  }
+  answer->set_merged_frame_count(taken_ - 1);
+  taken_ = 0;
+  return absl::OkStatus();
+}
+
+absl::Status StreamSlot::Solve(IkSolver& solver, absl::Time begin,
+                               v1::PoseFrame* answer) {
   const bool whole = answered_ % report_interval_ == 0;
   const absl::Status status = session_->Solve(driver_, solver, whole, solved_);
   // A frame that is late is answered, too; see LatePolicy.
@@ -257,10 +320,7 @@ absl::Status StreamSlot::Answer(IkSolver& solver, absl::Time read_time,
   }
   convert::ToProto(solved_.positions, answer->mutable_pose());
   if (has_capture_time_) AddTime(answer);
-  answer->set_merged_frame_count(taken_ - 1);
-  convert::ToProto(solved_.end_time - read_time,
-                   answer->mutable_server_duration());
-  taken_ = 0;
+  convert::ToProto(solved_.end_time - begin, answer->mutable_server_duration());
   ++answered_;
   return absl::OkStatus();
 }

@@ -5,6 +5,7 @@
 #define GELENK_SERVER_RPC_STREAM_SLOT_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
@@ -45,6 +46,14 @@ class StreamSlot {
   // nothing.
   absl::Status Take(const v1::TargetFrame& frame, absl::Time now);
 
+  // When to Fill, if no frame comes until then; never, where the session does
+  // not want it or has come to rest.
+  std::optional<absl::Time> fill_time() const { return fill_time_; }
+  bool fills() const { return fill_interval_ > absl::ZeroDuration(); }
+  // Answers for a frame that did not come. An error: there is no answer, and
+  // there will be none before the next frame.
+  absl::Status Fill(IkSolver& solver, absl::Time now, v1::PoseFrame* answer);
+
   // Frames were taken that no answer has covered.
   bool has_unanswered() const { return taken_ > 0; }
   bool IsHeavy() const { return session_->IsHeavy(); }
@@ -63,8 +72,12 @@ class StreamSlot {
  private:
   StreamSlot(const ServiceState& state, std::shared_ptr<Session> session,
              DriverId driver, const v1::AttachSession& request);
+  // What stands for a frame at `now` by the source's clock.
+  absl::Duration CaptureTimeAt(absl::Time now) const;
   // By how much the newest frame came later than the fastest of late.
   void NoteAge(absl::Duration capture_time, absl::Time arrival);
+  // Solves for what was taken, or for nothing new.
+  absl::Status Solve(IkSolver& solver, absl::Time begin, v1::PoseFrame* answer);
   // Fills the times of an answer to frames that told theirs.
   void AddTime(v1::PoseFrame* answer);
   // Fills joint frames and continuation where they are due.
@@ -78,6 +91,8 @@ class StreamSlot {
   const bool include_joint_frames_;
   const int report_interval_;
   const int continuation_interval_;
+  // Zero: never.
+  const absl::Duration fill_interval_;
 
   InputFrame input_;
   SolvedFrame solved_;
@@ -93,6 +108,10 @@ class StreamSlot {
   int64_t newest_number_ = 0;
   int64_t out_of_order_count_ = 0;
   int64_t answered_ = 0;
+  std::optional<absl::Time> fill_time_;
+  // Fills end then, at the latest.
+  absl::Time moving_until_;
+  Eigen::VectorXd positions_before_;
 };
 
 }  // namespace gelenk::server

@@ -1,6 +1,7 @@
 #include "server/rpc/streaming_solve_call.h"
 
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -76,7 +77,7 @@ void StreamingSolveCall::OnRead(bool ok) {
     TakeMessage();
   }
   if (finished_call_) {
-    delete this;
+    DeleteIfDone();
     return;
   }
   Advance();
@@ -102,6 +103,7 @@ void StreamingSolveCall::OnWritten(bool ok) {
 
 void StreamingSolveCall::OnWorked(bool) {
   working_ = false;
+  fills_are_due_ = fills_;
   if (message_waits_) {
     message_waits_ = false;
     TakeMessage();
@@ -109,16 +111,36 @@ void StreamingSolveCall::OnWorked(bool) {
   Advance();
 }
 
+void StreamingSolveCall::OnFillTime(bool) {
+  fill_alarm_is_set_ = false;
+  if (finished_call_) {
+    DeleteIfDone();
+    return;
+  }
+  // A worker looks after them when it is done.
+  if (working_) return;
+  fills_are_due_ = true;
+  Advance();
+}
+
 void StreamingSolveCall::OnFinished(bool) {
   finished_call_ = true;
-  // A read that is still under way comes back first.
-  if (!reading_) delete this;
+  DeleteIfDone();
+}
+
+void StreamingSolveCall::DeleteIfDone() {
+  // A read or an alarm that is still under way comes back first.
+  if (!reading_ && !fill_alarm_is_set_) delete this;
 }
 
 void StreamingSolveCall::Advance() {
   if (working_ || finishing_) return;
   if (broken_) has_message_ = false;
   if (has_message_ && !Consume(thread_->solver(), false)) {
+    ConsumeOnWorker();
+    return;
+  }
+  if (fills_are_due_ && !FillSlots(thread_->solver(), false)) {
     ConsumeOnWorker();
     return;
   }
@@ -133,6 +155,7 @@ void StreamingSolveCall::Advance() {
     }
   }
   if (!has_message_ && !reading_ && !half_closed_ && !IsFull()) StartRead();
+  if (fills_ && !fill_alarm_is_set_) SetFillAlarm();
   if ((half_closed_ || broken_) && !has_message_ && !writing_ && !reading_) {
     Finish();
   }
@@ -140,6 +163,7 @@ void StreamingSolveCall::Advance() {
 
 void StreamingSolveCall::Finish() {
   finishing_ = true;
+  if (fill_alarm_is_set_) fill_alarm_.Cancel();
   stream_.Finish(ToGrpc(close_status_), finished_.tag());
 }
 
@@ -220,12 +244,56 @@ bool StreamingSolveCall::AnswerLast(int index, IkSolver& solver,
   return true;
 }
 
+bool StreamingSolveCall::FillSlots(IkSolver& solver, bool heavy_allowed) {
+  const absl::Time now = Now();
+  for (const auto& [index, slot] : slots_) {
+    const std::optional<absl::Time> time = slot->fill_time();
+    if (!time || *time > now || half_closed_ || broken_) continue;
+    // Frames that are there come first.
+    if (slot->has_unanswered()) continue;
+    if (!heavy_allowed && slot->IsHeavy()) return false;
+    v1::PoseFrame* answer = AddFill(index, slot->answer_bytes());
+    if (!slot->Fill(solver, now, answer).ok()) {
+      // Whoever took over, or ended the session, is told of at the next tick.
+      responses_[filling_].get()->mutable_frames()->RemoveLast();
+    }
+  }
+  fills_are_due_ = false;
+  return true;
+}
+
+v1::PoseFrame* StreamingSolveCall::AddFill(int slot, size_t bytes) {
+  auto* frames = responses_[filling_].get()->mutable_frames();
+  for (int i = frames->size() - 1; i >= 0; --i) {
+    if (frames->Get(i).slot() != slot) continue;
+    if (!frames->Get(i).timing().filled()) break;
+    frames->DeleteSubrange(i, 1);
+    filled_bytes_ -= bytes;
+    break;
+  }
+  return AddAnswer(bytes);
+}
+
+void StreamingSolveCall::SetFillAlarm() {
+  if (half_closed_ || broken_ || finishing_) return;
+  std::optional<absl::Time> next;
+  for (const auto& [index, slot] : slots_) {
+    const std::optional<absl::Time> time = slot->fill_time();
+    if (time && (!next || *time < *next)) next = time;
+  }
+  if (!next) return;
+  fill_alarm_is_set_ = true;
+  fill_alarm_.Set(thread_->queue(), absl::ToChronoTime(*next),
+                  fill_time_.tag());
+}
+
 void StreamingSolveCall::ConsumeOnWorker() {
   working_ = true;
   // Asked now: the next message may come while the worker is at it.
   const auto work = [this, has_message = has_message_](IkSolver& solver) {
     burst_begin_ = Now();
     if (has_message) Consume(solver, true);
+    if (fills_are_due_) FillSlots(solver, true);
     AnswerMerged(solver, true);
     alarm_.Set(thread_->queue(), std::chrono::system_clock::now(),
                worked_.tag());
@@ -266,6 +334,7 @@ void StreamingSolveCall::Attach(const v1::AttachSession& request) {
     ToProto(slot.status(), event->mutable_status());
     return;
   }
+  fills_ |= (*slot)->fills();
   *responses_[filling_].get()->add_events() = attached;
   slots_[request.slot()] = *std::move(slot);
 }

@@ -44,6 +44,7 @@ class StreamingSolveCall final : public Ticking {
   void OnRead(bool ok);
   void OnWritten(bool ok);
   void OnWorked(bool ok);
+  void OnFillTime(bool ok);
   void OnFinished(bool ok);
 
   // Begins with the message that was read.
@@ -60,6 +61,11 @@ class StreamingSolveCall final : public Ticking {
   bool AnswerMerged(IkSolver& solver, bool heavy_allowed);
   // The same for one slot that is about to go.
   bool AnswerLast(int slot, IkSolver& solver, bool heavy_allowed);
+  // Answers for frames that did not come, where it is time. False as in
+  // Consume.
+  bool FillSlots(IkSolver& solver, bool heavy_allowed);
+  // Wakes the stream when the next slot is to be filled.
+  void SetFillAlarm();
   void ConsumeOnWorker();
 
   void Attach(const v1::AttachSession& request);
@@ -67,6 +73,8 @@ class StreamingSolveCall final : public Ticking {
   void AnswerSlot(int slot, StreamSlot& stream_slot, IkSolver& solver);
   v1::StreamEvent* AddEvent(v1::StreamEvent::Kind kind, int slot);
   v1::PoseFrame* AddAnswer(size_t bytes);
+  // The same for a fill: a slow reader misses those before it.
+  v1::PoseFrame* AddFill(int slot, size_t bytes);
 
   bool IsFull() const;
   void CheckSlots();
@@ -74,6 +82,7 @@ class StreamingSolveCall final : public Ticking {
   void StartWrite();
   void Close(const absl::Status& why);
   void Finish();
+  void DeleteIfDone();
 
   v1::SessionService::AsyncService* const service_;
   ServiceState* const state_;
@@ -87,9 +96,12 @@ class StreamingSolveCall final : public Ticking {
   Operation<StreamingSolveCall> read_{this, &StreamingSolveCall::OnRead};
   Operation<StreamingSolveCall> written_{this, &StreamingSolveCall::OnWritten};
   Operation<StreamingSolveCall> worked_{this, &StreamingSolveCall::OnWorked};
+  Operation<StreamingSolveCall> fill_time_{this,
+                                           &StreamingSolveCall::OnFillTime};
   Operation<StreamingSolveCall> finished_{this,
                                           &StreamingSolveCall::OnFinished};
   grpc::Alarm alarm_;
+  grpc::Alarm fill_alarm_;
   std::unique_ptr<LimitedPlace> place_;
 
   std::map<int, std::unique_ptr<StreamSlot>> slots_;
@@ -115,6 +127,10 @@ class StreamingSolveCall final : public Ticking {
   bool reading_ = false;
   bool writing_ = false;
   bool working_ = false;
+  bool fill_alarm_is_set_ = false;
+  // Some slot was attached that wants it.
+  bool fills_ = false;
+  bool fills_are_due_ = false;
   bool finishing_ = false;
   bool finished_call_ = false;
   bool half_closed_ = false;

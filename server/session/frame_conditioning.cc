@@ -55,6 +55,17 @@ bool FrameConditioning::IsMissing(const InputFrame& frame) const {
   return true;
 }
 
+absl::Status FrameConditioning::CheckInTime(const InputFrame& frame) const {
+  if (!filled_until_ || !frame.capture_time ||
+      *frame.capture_time > *filled_until_) {
+    return absl::OkStatus();
+  }
+  return absl::OutOfRangeError(
+      absl::StrCat("capture_time: ", absl::FormatDuration(*frame.capture_time),
+                   " is late: the session was filled up to ",
+                   absl::FormatDuration(*filled_until_)));
+}
+
 absl::Status FrameConditioning::CheckFrame(const InputFrame& frame) const {
   Violations violations;
   if (!frame.capture_time) {
@@ -74,6 +85,7 @@ absl::Status FrameConditioning::CheckFrame(const InputFrame& frame) const {
 
 void FrameConditioning::Take(const InputFrame& frame, absl::Time arrival) {
   capture_time_ = frame.capture_time;
+  if (frame.is_fill) filled_until_ = capture_time_;
   arrival_ = arrival;
   if (IsMissing(frame)) return;
   if (is_of_targets()) {
@@ -122,10 +134,14 @@ void FrameConditioning::SetGoals(absl::Span<const Goal> goals) {
 void FrameConditioning::Reset() {
   conditioner_.Reset();
   capture_time_.reset();
+  filled_until_.reset();
 }
 
 void FrameConditioning::Exchange(StateNumbers& state) {
-  if (state.is_reading()) capture_time_.reset();
+  if (state.is_reading()) {
+    capture_time_.reset();
+    filled_until_.reset();
+  }
   conditioner_.Exchange(state);
   if (!is_of_targets()) return;
   state.Numbers(newest_);

@@ -35,6 +35,9 @@ class FrameConditioning {
   const ConditioningOptions& options() const { return options_; }
   bool is_of_targets() const { return rig_.has_value(); }
 
+  // OUT_OF_RANGE where `frame` was captured before what was filled in for it.
+  absl::Status CheckInTime(const InputFrame& frame) const;
+
   // Whether `frame` may be taken: it says when it was captured, and one that is
   // missing (without pose, or targets) is not the first.
   absl::Status CheckFrame(const InputFrame& frame) const;
@@ -72,6 +75,7 @@ class FrameConditioning {
   Eigen::VectorXd used_;
   // Of the newest frame.
   std::optional<absl::Duration> capture_time_;
+  std::optional<absl::Duration> filled_until_;
   absl::Time arrival_;
   LiveStatus status_;
 };

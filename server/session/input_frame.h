@@ -39,6 +39,8 @@ struct InputFrame {
   // none.
   bool has_source_pose = false;
   Eigen::VectorXd source_pose;
+  // Nobody sent it: it asks what stands for a frame that did not come.
+  bool is_fill = false;
 
   void Clear() {
     sequence_number.reset();
@@ -47,6 +49,7 @@ struct InputFrame {
     world_from_skeleton.reset();
     capture_time.reset();
     has_source_pose = false;
+    is_fill = false;
   }
 };
 

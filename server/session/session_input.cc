@@ -19,6 +19,10 @@ absl::Status SessionInput::CheckFrame(const IkProblem& problem,
     violations.Add("source_pose", "the session has no retargeting");
     return violations.ToStatus();
   }
+  if (conditioning != nullptr) {
+    absl::Status status = conditioning->CheckInTime(frame);
+    if (!status.ok()) return status;
+  }
   if (source != nullptr) {
     absl::Status status =
         frame.patch ? CheckGoals(problem.goals()) : absl::OkStatus();

@@ -182,6 +182,29 @@ TEST_F(SlotTest, AnswersCountOnce) {
   EXPECT_EQ(statistics_.answered_frames, 1);
 }
 
+TEST_F(SlotTest, GoesOnFromAnAnswerThatNoFrameAskedFor) {
+  Slot slot = Attached(v1::FRAME_POLICY_EVERY_FRAME);
+  v1::PoseFrame fill = Answer(1, 15);
+  fill.mutable_timing()->set_filled(true);
+  EXPECT_FALSE(slot.TakeFill(fill)) << "before any answer";
+  Push(slot, Frame(1, 1));
+  Push(slot, Frame(2, 2));
+  Send(slot);
+  EXPECT_TRUE(Settle(slot, Answer(1, 10)));
+  fill.set_continuation("eased");
+  EXPECT_TRUE(slot.TakeFill(fill));
+  EXPECT_EQ(slot.unanswered_count(), 1);
+  EXPECT_EQ(statistics_.answered_frames, 1);
+  slot.Rewind(&statistics_);
+  const v1::AttachSession attach = Attach(slot, 1);
+  EXPECT_EQ(attach.resume_from().sequence_number(), 1);
+  EXPECT_EQ(attach.resume_from().pose().positions(0), 15);
+  EXPECT_EQ(attach.resume_from().continuation(), "eased");
+  EXPECT_THAT(SentNumbers(slot), ElementsAre(2));
+  EXPECT_TRUE(Settle(slot, Answer(2, 20)));
+  EXPECT_FALSE(slot.TakeFill(fill)) << "overtaken";
+}
+
 TEST_F(SlotTest, ResumesFromTheLastAnswerAndSendsTheRestAgain) {
   Slot slot = Attached(v1::FRAME_POLICY_EVERY_FRAME);
   LoseAfterTwo(slot, "all that there is");

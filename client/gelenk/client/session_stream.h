@@ -96,7 +96,8 @@ class SessionStream final : private StreamCall::Owner {
   absl::StatusOr<int64_t> SendNext(
       v1::TargetFrame frame, absl::Duration timeout = absl::InfiniteDuration());
 
-  // The next answer: per slot in order of sequence numbers, each once. Nothing
+  // The next answer: per slot in order of sequence numbers, each once, and
+  // between them those that no frame asked for (FrameTiming.filled). Nothing
   // when none came within `timeout`. A slot that ended (taken over: ABORTED,
   // deleted or expired: NOT_FOUND) says so once; the others go on. OUT_OF_RANGE
   // at the end of a stream that was closed; when it broke for good, why.

@@ -245,15 +245,24 @@ bool Slot::Settle(const v1::PoseFrame& answer, SteadyTime now,
     sent_count_ = std::max(0, sent_count_ - 1);
   }
   answered_.set_sequence_number(answer.sequence_number());
-  *answered_.mutable_capture_time() = answer.capture_time();
-  if (accepted) {
-    *answered_.mutable_pose() = answer.pose();
-    answered_.set_continuation(answer.continuation());
-    was_solved_ = true;
-    probing_ = false;
-  }
+  NoteAnswer(answer);
+  if (accepted) probing_ = false;
   ++statistics->answered_frames;
   return true;
+}
+
+bool Slot::TakeFill(const v1::PoseFrame& answer) {
+  if (answer.sequence_number() != answered_.sequence_number()) return false;
+  NoteAnswer(answer);
+  return true;
+}
+
+void Slot::NoteAnswer(const v1::PoseFrame& answer) {
+  *answered_.mutable_capture_time() = answer.capture_time();
+  if (answer.status().code() != 0) return;
+  *answered_.mutable_pose() = answer.pose();
+  answered_.set_continuation(answer.continuation());
+  was_solved_ = true;
 }
 
 }  // namespace gelenk::client

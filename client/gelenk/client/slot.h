@@ -77,6 +77,9 @@ class Slot {
   // False when it was answered before.
   bool Settle(const v1::PoseFrame& answer, SteadyTime now,
               StreamStatistics* statistics);
+  // Of an answer that no frame asked for (FrameTiming.filled): goes on from it.
+  // False when a later frame was answered before.
+  bool TakeFill(const v1::PoseFrame& answer);
   int unanswered_count() const { return static_cast<int>(waiting_.size()); }
 
  private:
@@ -90,6 +93,8 @@ class Slot {
     return spec_.frame_policy != v1::FRAME_POLICY_EVERY_FRAME;
   }
   bool CanMerge(const v1::TargetFrame& frame) const;
+  // Where the session is now.
+  void NoteAnswer(const v1::PoseFrame& answer);
   void MergeWaiting(StreamStatistics* statistics);
   absl::Status Replace(absl::string_view reason);
   // What frames without answer may have done to the session.

@@ -55,7 +55,10 @@ SlotTable::News SlotTable::Read(v1::StreamingSolveResponse* response,
   for (v1::PoseFrame& answer : *response->mutable_frames()) {
     Slot* slot = Find(answer.slot());
     if (slot == nullptr || slot->phase() != Slot::Phase::kAttached) continue;
-    if (!slot->Settle(answer, now, &statistics_)) continue;
+    const bool is_news = answer.timing().filled()
+                             ? slot->TakeFill(answer)
+                             : slot->Settle(answer, now, &statistics_);
+    if (!is_news) continue;
     news.has_answers = true;
     answers->push_back(std::move(answer));
   }

@@ -11,7 +11,7 @@ namespace {
 // Frames that are shown one after the other, and some that come at once.
 constexpr int kSpareFrames = 4;
 
-absl::Status CheckJitter(const ConditioningOptions& options) {
+absl::Status CheckTimes(const ConditioningOptions& options) {
   Violations violations;
   if (options.jitter_frames < 0 || options.jitter_frames > kMaxJitterFrames) {
     violations.Add("jitter_buffer_frames",
@@ -23,6 +23,13 @@ absl::Status CheckJitter(const ConditioningOptions& options) {
                    absl::StrCat("want more than 0 s with a jitter buffer, got ",
                                 options.frame_interval_s));
   }
+  const double fill_s = options.fill_interval_s;
+  if (fill_s != 0 &&
+      !(fill_s >= kMinFillInterval_s && fill_s <= kMaxFillInterval_s)) {
+    violations.Add("fill_interval",
+                   absl::StrCat("want ", kMinFillInterval_s, " to ",
+                                kMaxFillInterval_s, " s, got ", fill_s));
+  }
   return violations.ToStatus();
 }
 
@@ -31,7 +38,7 @@ absl::Status CheckJitter(const ConditioningOptions& options) {
 absl::StatusOr<FrameConditioner> FrameConditioner::Create(
     std::shared_ptr<const Skeleton> skeleton,
     const ConditioningOptions& options, const Eigen::VectorXd& rest) {
-  if (absl::Status status = CheckJitter(options); !status.ok()) return status;
+  if (absl::Status status = CheckTimes(options); !status.ok()) return status;
   LiveClockOptions clock_options;
   clock_options.delay_s = options.jitter_frames * options.frame_interval_s;
   clock_options.late_policy = options.late_policy;

@@ -34,10 +34,16 @@ struct ConditioningOptions {
   LatePolicy late_policy = LatePolicy::kHold;
   double max_extrapolation_s = 0.1;
   double ease_s = 0.3;
+  // Whoever calls Take and Sample asks by himself when no frame came for so
+  // long; 0: never.
+  double fill_interval_s = 0;
 };
 
 // More is no live stream.
 inline constexpr int kMaxJitterFrames = 32;
+// No screen is faster, and nobody looks at one that is slower.
+inline constexpr double kMinFillInterval_s = 0.002;
+inline constexpr double kMaxFillInterval_s = 10;
 
 class FrameConditioner {
  public:

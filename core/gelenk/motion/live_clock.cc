@@ -220,11 +220,15 @@ LiveStatus LiveClock::ShowLate(double beyond_s, VectorView positions) {
   switch (options_.late_policy) {
     case LatePolicy::kHold:
       positions = poses_.col(At(size_ - 1));
+      status.is_settled = true;
       status.state = IsMissing(beyond_s) ? LiveStatus::State::kHolding
                                          : LiveStatus::State::kPlaying;
       return status;
     case LatePolicy::kDrop:
-      if (IsMissing(beyond_s)) return status;
+      if (IsMissing(beyond_s)) {
+        status.is_settled = true;
+        return status;
+      }
       positions = poses_.col(At(size_ - 1));
       status.state = LiveStatus::State::kPlaying;
       return status;
@@ -238,6 +242,7 @@ LiveStatus LiveClock::ShowLate(double beyond_s, VectorView positions) {
     return status;
   }
   status.state = LiveStatus::State::kEasing;
+  status.is_settled = options_.rest.size() == 0 || easing_s >= options_.ease_s;
   if (options_.rest.size() > 0) {
     Difference(*skeleton_, positions, options_.rest, change_);
     if (options_.keeps_root) {

@@ -98,6 +98,8 @@ struct LiveStatus {
   double age_s = 0;
   // Sequence number of the frame at or before; -1 without.
   int64_t sequence_number = -1;
+  // Later samples are the same until a frame comes.
+  bool is_settled = false;
 };
 
 class LiveClock {

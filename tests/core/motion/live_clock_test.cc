@@ -114,6 +114,7 @@ TEST(LiveClockTest, HoldsTheLastFrame) {
   EXPECT_NEAR(Show(clock, kOffset_s + 0.5, status), kFrame_s, kRounding);
   EXPECT_EQ(status.state, State::kHolding);
   EXPECT_NEAR(status.age_s, 0.48, kRounding);
+  EXPECT_TRUE(status.is_settled);
 }
 
 TEST(LiveClockTest, DropsWhatIsMissing) {
@@ -124,8 +125,10 @@ TEST(LiveClockTest, DropsWhatIsMissing) {
   EXPECT_NEAR(Show(clock, kOffset_s + 2.4 * kFrame_s, status), kFrame_s,
               kRounding);
   EXPECT_EQ(status.state, State::kPlaying);
+  EXPECT_FALSE(status.is_settled);
   EXPECT_EQ(Show(clock, kOffset_s + 2.6 * kFrame_s, status), -99);
   EXPECT_EQ(status.state, State::kEmpty);
+  EXPECT_TRUE(status.is_settled);
 }
 
 TEST(LiveClockTest, ExtrapolatesThenEasesAndDoesNotPop) {
@@ -146,8 +149,10 @@ TEST(LiveClockTest, ExtrapolatesThenEasesAndDoesNotPop) {
   EXPECT_NEAR(Show(clock, kOffset_s + kFrame_s + 0.4, status),
               0.5 * (kFrame_s + 0.1) - 0.5, kRounding);
   EXPECT_EQ(status.state, State::kEasing);
-  const double shown = Show(clock, kOffset_s + kFrame_s + 0.6, status);
+  EXPECT_FALSE(status.is_settled);
+  const double shown = Show(clock, kOffset_s + kFrame_s + 0.6 + 1e-6, status);
   EXPECT_NEAR(shown, -1, kRounding);
+  EXPECT_TRUE(status.is_settled);
   // Frames come again: from there, smoothly, back to the motion.
   double before = shown;
   for (int step = 0; step <= 100; ++step) {
