@@ -108,7 +108,7 @@ absl::Status RunVmc(const BridgeOptions& options, const std::string& server,
   if (!service.ok()) return service.status();
   std::fprintf(stderr, "gelenk: VMC at port %d\n", (*in)->port());
   VmcBridge bridge((*service)->connection(), *std::move(target), *std::move(in),
-                   *std::move(out));
+                   *std::move(out), *std::move(trackers));
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
   const absl::Time deadline =

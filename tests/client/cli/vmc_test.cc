@@ -13,6 +13,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
+#include "client/cli/command.h"
 #include "client/cli/motion/body_file.h"
 #include "client/cli/service.h"
 #include "client/cli/vmc/osc_packet.h"
@@ -329,6 +330,30 @@ TEST_F(VmcBridgeTest, AFloodDoesNotKeepFramesFromLeaving) {
   EXPECT_GT(count, 0);
 }
 
+// Headset and controllers on the actor at a frame.
+std::string TrackerPacket(const gelenk::testing::Actor& actor, int frame) {
+  const TrackerFrame seen = gelenk::testing::TrackersOn(
+      *actor.model, actor.positions.col(frame), false);
+  std::vector<OscMessage> messages;
+  const auto add = [&](const char* path, const char* serial,
+                       const RigidTransform& ours) {
+    const RigidTransform place = MirrorAxes(ours);
+    OscMessage message{path, {std::string(serial)}};
+    for (double n : place.translation) {
+      message.arguments.emplace_back(static_cast<float>(n));
+    }
+    for (double n : place.rotation.coeffs()) {
+      message.arguments.emplace_back(static_cast<float>(n));
+    }
+    messages.push_back(message);
+  };
+  add("/VMC/Ext/Hmd/Pos", "hmd", *seen.head);
+  add("/VMC/Ext/Con/Pos", "con0", *seen.hands[0]);
+  add("/VMC/Ext/Con/Pos", "con1", *seen.hands[1]);
+  messages.push_back(kOk);
+  return WriteOscBundle(messages);
+}
+
 TEST_F(VmcBridgeTest, TrackersMoveABody) {
   const gelenk::testing::Actor actor = gelenk::testing::WalkingActor(40);
   VmcTrackers trackers;
@@ -337,26 +362,7 @@ TEST_F(VmcBridgeTest, TrackersMoveABody) {
   Start(trackers);
   std::vector<VmcFrame> frames;
   for (int f = 0; f < 40; ++f) {
-    const TrackerFrame seen = gelenk::testing::TrackersOn(
-        *actor.model, actor.positions.col(f), false);
-    std::vector<OscMessage> messages;
-    const auto add = [&](const char* path, const char* serial,
-                         const RigidTransform& ours) {
-      const RigidTransform place = MirrorAxes(ours);
-      OscMessage message{path, {std::string(serial)}};
-      for (double n : place.translation) {
-        message.arguments.emplace_back(static_cast<float>(n));
-      }
-      for (double n : place.rotation.coeffs()) {
-        message.arguments.emplace_back(static_cast<float>(n));
-      }
-      messages.push_back(message);
-    };
-    add("/VMC/Ext/Hmd/Pos", "hmd", *seen.head);
-    add("/VMC/Ext/Con/Pos", "con0", *seen.hands[0]);
-    add("/VMC/Ext/Con/Pos", "con1", *seen.hands[1]);
-    messages.push_back(kOk);
-    performer_->Send(WriteOscBundle(messages));
+    performer_->Send(TrackerPacket(actor, f));
     if (const auto frame = NextFrame()) frames.push_back(*frame);
   }
   Stop();
@@ -366,6 +372,36 @@ TEST_F(VmcBridgeTest, TrackersMoveABody) {
              frames.front().bones[kHipsBone]->translation)
                 .z(),
             0.2);
+}
+
+TEST_F(VmcBridgeTest, TheCommandFollowsTheTrackersThatItIsTold) {
+  const gelenk::testing::Actor actor = gelenk::testing::WalkingActor(2);
+  receiver_ = *UdpSocket::Listen("0");
+  const std::string port = absl::StrCat((*UdpSocket::Listen("0"))->port());
+  performer_ = *UdpSocket::Connect(absl::StrCat("127.0.0.1:", port));
+  CLI::App app;
+  const Command command = AddBridgeCommand(app);
+  app.parse(absl::StrCat("bridge vmc --listen ", port, " --onto humanoid",
+                         " --send 127.0.0.1:", receiver_->port(),
+                         " --tracker hmd=head --tracker con0=left_hand",
+                         " --tracker con1=right_hand --seconds 3",
+                         " --format json"));
+  std::string output;
+  std::atomic<bool> ended = false;
+  thread_ = std::thread([&] {
+    status_ = command.run(GlobalOptions(), &output);
+    ended = true;
+  });
+  const std::string packet = TrackerPacket(actor, 0);
+  bool came_out = false;
+  std::string answer;
+  while (!ended && !came_out) {
+    performer_->Send(packet);
+    came_out = receiver_->Receive(absl::Milliseconds(10), answer);
+  }
+  thread_.join();
+  EXPECT_TRUE(status_.ok()) << status_;
+  EXPECT_TRUE(came_out) << output;
 }
 
 TEST(UdpSocketTest, BadAddressesAreNamed) {
