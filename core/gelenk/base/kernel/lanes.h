@@ -1,15 +1,14 @@
 // Vectors of doubles, for the sources that are compiled once per level of the
 // instruction set (see gelenk_kernel_level in CMakeLists.txt).
 //
-// Everything here is in an unnamed namespace and always inlined: a function
-// that was emitted with a higher level could be picked by the linker for
-// everybody. For the same reason such sources use nothing of a library.
+// For the kernels only, see inline.h.
 #ifndef GELENK_BASE_KERNEL_LANES_H_
 #define GELENK_BASE_KERNEL_LANES_H_
 
 #include <cstdint>
 
-#define GELENK_INLINE inline __attribute__((always_inline))
+#include "gelenk/base/kernel/inline.h"
+#include "gelenk/base/kernel/sine.h"
 
 namespace gelenk::kernel {
 namespace {
@@ -133,36 +132,18 @@ struct Lanes : PackOf<kCount> {
     return bits;
   }
 
-  // Sine and cosine of |x| <= kLargestAngle, within 1 ulp: minimax polynomials
-  // of the Cephes library's kind on [-pi/4, pi/4], a three-part reduction.
+  // Of |x| <= kLargestAngle; see sine.h.
   static GELENK_INLINE void SineCosine(const Pack& x, Pack* sine,
                                        Pack* cosine) {
     // Adding 1.5 * 2^52 rounds to a whole number, which is then in the low
     // bits.
     constexpr double kRounder = 6755399441055744.0;
-    const Pack rounded = x * 6.36619772367581343076e-01 + kRounder;
+    const Pack rounded = x * kQuartersPerRadian + kRounder;
     const Pack k = rounded - kRounder;
-    Pack r = x - k * 1.57079632673412561417e+00;
-    r -= k * 6.07710050630396597660e-11;
-    r -= k * 2.02226624879595063154e-21;
+    const Pack r = TakeQuarters(x, k);
     const Pack z = r * r;
-    const Pack s =
-        r + r * z *
-                (-1.66666666666666324348e-01 +
-                 z * (8.33333333332248946124e-03 +
-                      z * (-1.98412698298579493134e-04 +
-                           z * (2.75573137070700676789e-06 +
-                                z * (-2.50507602534068634195e-08 +
-                                     z * 1.58969099521155010221e-10)))));
-    const Pack c =
-        1.0 - 0.5 * z +
-        z * z *
-            (4.16666666666666019037e-02 +
-             z * (-1.38888888888741095749e-03 +
-                  z * (2.48015872894767294178e-05 +
-                       z * (-2.75573143513906633035e-07 +
-                            z * (2.08757232129817482790e-09 +
-                                 z * -1.13596475577881948265e-11)))));
+    const Pack s = SinePolynomial(r, z);
+    const Pack c = CosinePolynomial(z);
     const Mask quadrant = (Mask)rounded;
     const Mask odd = -(quadrant & 1);
     const Pack a = Select(odd, c, s);
@@ -174,9 +155,6 @@ struct Lanes : PackOf<kCount> {
     *cosine = (Pack)((Mask)b ^ cosine_sign);
   }
 };
-
-// Beyond, the reduction of SineCosine loses digits.
-constexpr double kLargestAngle = 1e5;
 
 }  // namespace
 }  // namespace gelenk::kernel

@@ -5,6 +5,7 @@
 //
 // (Nocedal, Wright, Numerical Optimization, 2006, ch. 4 and 6; the active set
 // of bounds as in Bertsekas, "Projected Newton methods", 1982.)
+#include "gelenk/base/kernel/scalar.h"
 #include "gelenk/ik/kernel/arm_curvature.h"
 #include "gelenk/ik/kernel/arm_layout.h"
 #include "gelenk/ik/kernel/arm_pose.h"
@@ -28,10 +29,6 @@ constexpr double kTrusted = 0.75;
 constexpr double kMistrusted = 0.25;
 constexpr double kLeastStep = 1e-9;
 constexpr double kLeastSlip = 1e-5;
-
-GELENK_INLINE double Min(double a, double b) { return a < b ? a : b; }
-GELENK_INLINE double Max(double a, double b) { return a > b ? a : b; }
-GELENK_INLINE double Abs(double a) { return a < 0 ? -a : a; }
 
 class Settling {
  public:

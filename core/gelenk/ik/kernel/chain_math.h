@@ -1,51 +1,14 @@
-// Small algebra of the kernel of chains: vectors and row-major matrices whose
-// elements are packs, a number of each lane.
+// Small algebra of the kernel of chains' step.
 //
 // For the kernels only, like base/kernel/lanes.h.
 #ifndef GELENK_IK_KERNEL_CHAIN_MATH_H_
 #define GELENK_IK_KERNEL_CHAIN_MATH_H_
 
-#include "gelenk/base/kernel/lanes.h"
+#include "gelenk/base/kernel/inline.h"
+#include "gelenk/ik/kernel/spatial_math.h"
 
 namespace gelenk::kernel {
 namespace {
-
-template <typename Pack>
-GELENK_INLINE void Cross(const Pack* a, const Pack* b, Pack* out) {
-  out[0] = a[1] * b[2] - a[2] * b[1];
-  out[1] = a[2] * b[0] - a[0] * b[2];
-  out[2] = a[0] * b[1] - a[1] * b[0];
-}
-template <typename Pack>
-GELENK_INLINE Pack Dot(const Pack* a, const Pack* b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <typename Pack>
-GELENK_INLINE void Multiply(const Pack* a, const Pack* b, Pack* out) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      out[3 * i + j] =
-          a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
-    }
-  }
-}
-template <typename Pack>
-GELENK_INLINE void AddTransformed(const Pack* m, const Pack* v, Pack* out) {
-  for (int i = 0; i < 3; ++i) {
-    out[i] += m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
-  }
-}
-
-template <typename Pack>
-GELENK_INLINE void MatrixFromQuaternion(const Pack* q, Pack* m) {
-  const Pack x2 = q[0] + q[0], y2 = q[1] + q[1], z2 = q[2] + q[2];
-  const Pack xx = q[0] * x2, yy = q[1] * y2, zz = q[2] * z2;
-  const Pack xy = q[0] * y2, xz = q[0] * z2, yz = q[1] * z2;
-  const Pack wx = q[3] * x2, wy = q[3] * y2, wz = q[3] * z2;
-  m[0] = 1 - (yy + zz), m[1] = xy - wz, m[2] = xz + wy;
-  m[3] = xy + wz, m[4] = 1 - (xx + zz), m[5] = yz - wx;
-  m[6] = xz - wy, m[7] = yz + wx, m[8] = 1 - (xx + yy);
-}
 
 // q * exp(w / 2), unit. `w` is at most sqrt(3) kMaxStep long, so that short
 // series do: their error of 1e-10 shortens the step by as much, and what it
@@ -68,11 +31,8 @@ GELENK_INLINE void Rotate(const Pack* q, const Pack* w, Pack* out) {
                                        z * (-1.0 / 3628800 +
                                             z * (1.0 / 479001600 +
                                                  z * (-1.0 / 87178291200)))))));
-  const Pack x = s * w[0], y = s * w[1], t = s * w[2];
-  out[0] = q[3] * x + q[0] * c + q[1] * t - q[2] * y;
-  out[1] = q[3] * y + q[1] * c + q[2] * x - q[0] * t;
-  out[2] = q[3] * t + q[2] * c + q[0] * y - q[1] * x;
-  out[3] = q[3] * c - q[0] * x - q[1] * y - q[2] * t;
+  const Pack turn[4] = {s * w[0], s * w[1], s * w[2], c};
+  MultiplyQuaternions(q, turn, out);
   const Pack excess =
       out[0] * out[0] + out[1] * out[1] + out[2] * out[2] + out[3] * out[3] - 1;
   const Pack inverse = 1 + excess * (-0.5 + 0.375 * excess);

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "gelenk/base/kernel/lanes.h"
+#include "gelenk/base/kernel/inline.h"
 #include "gelenk/ik/kernel/tree_layout.h"
 
 namespace gelenk::kernel {
@@ -33,6 +33,20 @@ GELENK_INLINE bool IsWellInside(const RotationLimit& limit, const double* q) {
   const double t = q[3] < 0 ? -along : along;
   return t > limit.twist_tangent_lower * w + kMargin &&
          t < limit.twist_tangent_upper * w - kMargin;
+}
+
+// True when a rotation that touches these bounds, pushed by `g` about the
+// column of its basis (see TouchRotationLimit), would leave them.
+GELENK_INLINE bool BlocksTurn(uint8_t touched, int column, double g) {
+  switch (column) {
+    case 0:
+      return (touched & kConeIsPoint) || ((touched & kTouchesCone) && g > 0);
+    case 1:
+      return touched & kConeIsPoint;
+    default:
+      return ((touched & kTouchesTwistLower) && g < 0) ||
+             ((touched & kTouchesTwistUpper) && g > 0);
+  }
 }
 
 }  // namespace
