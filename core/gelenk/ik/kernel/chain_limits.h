@@ -58,9 +58,9 @@ inline void BlockRotations(const ChainState& state, const ChainStep& step,
     if (!step.limited[part + i]) continue;
     const uint8_t touched = state.work.touched[step.node[part + i]];
     if (touched == 0) continue;
-    for (int c = 0; c < 3; ++c) {
-      if (BlocksTurn(touched, c, g[c][i])) weight[c][i] = 0;
-    }
+    if (BlocksTurn(touched, 0, g[0][i])) weight[0][i] = 0;
+    if (BlocksTurn(touched, 1, g[1][i])) weight[1][i] = 0;
+    if (BlocksTurn(touched, 2, g[2][i])) weight[2][i] = 0;
   }
 }
 
