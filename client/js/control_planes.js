@@ -51,9 +51,16 @@ export class LayeredSkin {
     });
     const count = vertices.vertexVolumes.length;
     const parts = vertices.partVertices.length;
+    if (!vertices.partVertices.every((v, i, list) => v >= 0 && v < count &&
+        (i === 0 || v >= list[i - 1]))) {
+      throw new FrameError(
+          `partVertices: want vertices 0 to ${count - 1}, rising`);
+    }
     const wanted = {
       coordinates: 3 * count, normalComponents: 3 * count, partVolumes: parts,
-      partCoordinates: 3 * parts, partShares: parts,
+      partCoordinates: 3 * parts, partShares: parts, partSlopes: 6 * parts,
+      partShareSlopes: 2 * parts,
+      ownSlopes: 6 * new Set(vertices.partVertices).size,
     };
     for (const [name, want] of Object.entries(wanted)) {
       if (vertices[name].length !== want) {
@@ -65,9 +72,6 @@ export class LayeredSkin {
       if (!volumes.every((v) => v >= 0 && v < this.volumeCount)) {
         throw new FrameError(`want volumes 0 to ${this.volumeCount - 1}`);
       }
-    }
-    if (!vertices.partVertices.every((v) => v >= 0 && v < count)) {
-      throw new FrameError(`partVertices: want vertices 0 to ${count - 1}`);
     }
   }
 
@@ -135,32 +139,61 @@ export class LayeredSkin {
   }
 
   /**
-   * Writes positions and unit normals, x y z a vertex. The normal of a vertex
-   * that several volumes share is that of its own volume: near branches it is
-   * off by some degrees.
+   * Writes positions and unit normals, x y z a vertex.
    * @param {Float64Array} volumes of volumesOf
    * @param {Float32Array} positions
    * @param {Float32Array} normals
    */
   deform(volumes, positions, normals) {
-    const {vertexVolumes, coordinates, normalComponents} = this.#layout;
-    const {partVertices, partVolumes, partCoordinates, partShares} =
+    const {vertexVolumes, coordinates, normalComponents, partVertices} =
         this.#layout;
     const point = new Float64Array(12);
     let part = 0;
+    let shared = 0;
     for (let v = 0; v < vertexVolumes.length; ++v) {
       evaluate(volumes, vertexVolumes[v], coordinates, 3 * v, point);
-      setNormal(point, normalComponents, 3 * v, normals);
-      const own = [point[0], point[1], point[2]];
-      const moved = [...own];
-      for (; part < partVertices.length && partVertices[part] === v; ++part) {
-        evaluate(volumes, partVolumes[part], partCoordinates, 3 * part, point);
-        for (let c = 0; c < 3; ++c) {
-          moved[c] += partShares[part] * (point[c] - own[c]);
-        }
+      const first = part;
+      while (partVertices[part] === v) ++part;
+      if (part > first) {
+        this.#deformShared(
+            volumes, point, {v, first, end: part, shared: shared++}, positions,
+            normals);
+        continue;
       }
-      positions.set(moved, 3 * v);
+      positions.set(point.subarray(0, 3), 3 * v);
+      setUnit(normalOf(point, normalComponents, 3 * v), normals, 3 * v);
     }
+  }
+
+  // A vertex that parts first to end - 1 have a share of; `own` is where its
+  // own volume has it.
+  #deformShared(volumes, own, {v, first, end, shared}, positions, normals) {
+    const {partVolumes, partCoordinates, partShares} = this.#layout;
+    const {partSlopes, partShareSlopes, ownSlopes} = this.#layout;
+    const point = new Float64Array(12);
+    const moved = own.slice(0, 3);
+    const tangents = [new Float64Array(3), new Float64Array(3)];
+    let rest = 1;
+    for (let part = first; part < end; ++part) {
+      evaluate(volumes, partVolumes[part], partCoordinates, 3 * part, point);
+      const share = partShares[part];
+      rest -= share;
+      for (let c = 0; c < 3; ++c) {
+        const way = point[c] - own[c];
+        moved[c] += share * way;
+        tangents.forEach((tangent, k) => {
+          tangent[c] += share * along(point, partSlopes, 6 * part + 3 * k, c) +
+              partShareSlopes[2 * part + k] * way;
+        });
+      }
+    }
+    tangents.forEach((tangent, k) => {
+      for (let c = 0; c < 3; ++c) {
+        tangent[c] += rest * along(own, ownSlopes, 6 * shared + 3 * k, c);
+      }
+    });
+    positions.set(moved, 3 * v);
+    setUnit(cross(tangents[0], 0, tangents[1], 0), normals, 3 * v);
   }
 }
 
@@ -231,13 +264,22 @@ function evaluate(volumes, volume, coordinates, first, point) {
   }
 }
 
-// n = nu_u (a x b) + F_u x (nu_t a - nu_s b), made unit.
-function setNormal(point, components, first, normals) {
+// Coordinate c of the way along the slopes of u, s and t.
+function along(point, slopes, first, c) {
+  return slopes[first] * point[3 + c] + slopes[first + 1] * point[6 + c] +
+      slopes[first + 2] * point[9 + c];
+}
+
+// n = nu_u (a x b) + F_u x (nu_t a - nu_s b).
+function normalOf(point, components, first) {
   const [nuU, nuS, nuT] = components.slice(first, first + 3);
   const across = cross(point, 6, point, 9);
   const tilt = [6, 7, 8].map((i) => nuT * point[i] - nuS * point[i + 3]);
   const turned = cross(point, 3, tilt, 0);
-  const normal = across.map((number, c) => nuU * number + turned[c]);
-  const length = Math.hypot(...normal) || 1;
-  for (let c = 0; c < 3; ++c) normals[first + c] = normal[c] / length;
+  return across.map((number, c) => nuU * number + turned[c]);
+}
+
+function setUnit(vector, normals, first) {
+  const length = Math.hypot(...vector) || 1;
+  for (let c = 0; c < 3; ++c) normals[first + c] = vector[c] / length;
 }

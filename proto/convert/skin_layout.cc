@@ -7,14 +7,16 @@
 namespace gelenk::convert {
 namespace {
 
-void AddNumbers(const Eigen::Vector3d& vector,
-                google::protobuf::RepeatedField<float>* proto) {
-  for (double number : vector) proto->Add(static_cast<float>(number));
+template <class Number>
+void Set(const std::vector<Number>& numbers,
+         google::protobuf::RepeatedField<Number>* proto) {
+  proto->Assign(numbers.begin(), numbers.end());
 }
 
-void AddCoordinates(const VolumeCoordinates& at,
-                    google::protobuf::RepeatedField<float>* proto) {
-  AddNumbers({at.u, at.s, at.t}, proto);
+template <class Number>
+std::vector<Number> Numbers(
+    const google::protobuf::RepeatedField<Number>& proto) {
+  return {proto.begin(), proto.end()};
 }
 
 }  // namespace
@@ -30,27 +32,40 @@ void ToProto(const Skin& skin, v1::SkinLayout* proto) {
 }
 
 void ToProto(const LayeredSkin& skin, v1::VolumeLayout* proto) {
-  const VolumeRig& rig = skin.rig();
-  for (int i = 0; i < rig.link_count(); ++i) {
-    convert::ToProto(rig, i, proto->add_links());
+  for (int i = 0; i < skin.rig().link_count(); ++i) {
+    convert::ToProto(skin.rig(), i, proto->add_links());
   }
-  const SkinBinding& binding = skin.binding();
-  const std::vector<Eigen::Vector3d> normals = VertexNormals(skin.mesh());
-  for (int v = 0; v < skin.vertex_count(); ++v) {
-    const VertexBinding& vertex = binding.vertices[v];
-    proto->add_vertex_volumes(vertex.volume);
-    AddCoordinates(vertex.at, proto->mutable_coordinates());
-    const Eigen::Matrix3d jacobian =
-        rig.rest().volume(vertex.volume).Evaluate(vertex.at).Jacobian();
-    AddNumbers(jacobian.transpose() * normals[v],
-               proto->mutable_normal_components());
-    for (const BlendShare& part : binding.SharesOf(v)) {
-      proto->add_part_vertices(v);
-      proto->add_part_volumes(part.volume);
-      AddCoordinates(part.at, proto->mutable_part_coordinates());
-      proto->add_part_shares(static_cast<float>(part.share));
-    }
+  const ControlPlaneLayout layout = LayoutOf(skin);
+  Set(layout.vertex_volumes, proto->mutable_vertex_volumes());
+  Set(layout.coordinates, proto->mutable_coordinates());
+  Set(layout.normal_components, proto->mutable_normal_components());
+  Set(layout.part_vertices, proto->mutable_part_vertices());
+  Set(layout.part_volumes, proto->mutable_part_volumes());
+  Set(layout.part_coordinates, proto->mutable_part_coordinates());
+  Set(layout.part_shares, proto->mutable_part_shares());
+  Set(layout.part_slopes, proto->mutable_part_slopes());
+  Set(layout.part_share_slopes, proto->mutable_part_share_slopes());
+  Set(layout.own_slopes, proto->mutable_own_slopes());
+}
+
+ControlPlaneLayout FromProto(const v1::VolumeLayout& proto) {
+  ControlPlaneLayout layout;
+  for (const v1::SkinLink& link : proto.links()) {
+    layout.links.push_back({link.parent(), link.continuation(), link.length_m(),
+                            link.start_spacing_m(), link.end_spacing_m(),
+                            link.is_branch()});
   }
+  layout.vertex_volumes = Numbers(proto.vertex_volumes());
+  layout.coordinates = Numbers(proto.coordinates());
+  layout.normal_components = Numbers(proto.normal_components());
+  layout.part_vertices = Numbers(proto.part_vertices());
+  layout.part_volumes = Numbers(proto.part_volumes());
+  layout.part_coordinates = Numbers(proto.part_coordinates());
+  layout.part_shares = Numbers(proto.part_shares());
+  layout.part_slopes = Numbers(proto.part_slopes());
+  layout.part_share_slopes = Numbers(proto.part_share_slopes());
+  layout.own_slopes = Numbers(proto.own_slopes());
+  return layout;
 }
 
 }  // namespace gelenk::convert

@@ -10,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "convert/pose.h"
 #include "convert/skeleton.h"
-#include "gelenk/skin/control_plane_stream.h"
+#include "convert/skin_layout.h"
+#include "gelenk/skin/control_plane_mesh.h"
 #include "gelenk/skin/layered_skin.h"
 #include "gelenk/skin/vertex_stream.h"
 #include "tests/integration/skin_service_test.h"
@@ -177,34 +179,50 @@ TEST_F(SkinStreamTest, ALostFrameHealsAtTheNextKeyframe) {
   }
 }
 
+// What a client does with them, of a body that branches.
 TEST_F(SkinStreamTest, ClientsDeformByControlPlanes) {
-  v1::DeformSkinRequest request =
-      Request(v1::VERTEX_ENCODING_CONTROL_PLANES, 3);
+  v1::CreateSkinRequest create;
+  create.mutable_skin()->mutable_shape()->set_shape_id("humanoid");
+  create.mutable_skin()->mutable_shape()->set_vertex_count(1500);
+  const v1::Skin body = Create(create);
+  v1::DeformSkinRequest request;
+  request.set_name(body.name());
   request.set_include_layout(true);
-  const auto messages = Deform(request);
-  ASSERT_EQ(messages.size(), 4u);
-  const v1::VolumeLayout& layout = messages[0].layout().volumes();
-  ASSERT_EQ(layout.vertex_volumes_size(), skin_.vertex_count());
-  ASSERT_EQ(layout.coordinates_size(), 3 * skin_.vertex_count());
-  ASSERT_EQ(layout.normal_components_size(), 3 * skin_.vertex_count());
-  EXPECT_EQ(layout.links_size(), 3);
-  EXPECT_EQ(layout.part_vertices_size(), 0) << "nothing branches";
-  for (int i = 0; i < 3; ++i) {
-    std::vector<BezierVolume> volumes;
-    ASSERT_EQ(DecodeControlPlanes(local_->rig(), messages[i + 1].frame().data(),
-                                  volumes),
-              absl::OkStatus());
-    VertexBlocks blocks;
-    blocks.Resize(local_->block_count());
-    for (int v = 0; v < skin_.vertex_count(); ++v) {
-      const float* at = layout.coordinates().data() + 3 * v;
-      blocks.Set(local_->slots()[v],
-                 volumes[layout.vertex_volumes(v)]
-                     .Position({at[0], at[1], at[2]})
-                     .cast<float>(),
-                 Eigen::Vector3f::UnitX());
-    }
-    ExpectFrame(i, blocks, 3 * kFloatM);
+  v1::GetSkeletonRequest get;
+  get.set_name(body.skeleton());
+  const auto skeleton =
+      convert::FromProto(
+          Call(&v1::KinematicsService::Stub::GetSkeleton, get).value())
+          .value();
+  Eigen::VectorXd bend = Eigen::VectorXd::Zero(skeleton->velocity_count());
+  for (int i = 0; i < bend.size(); ++i) bend[i] = 0.3 * std::sin(1 + i);
+  Eigen::VectorXd pose = skeleton->rest_positions();
+  Integrate(*skeleton, skeleton->rest_positions(), bend, pose);
+  convert::ToProto(pose, request.add_poses()->mutable_pose());
+  request.set_encoding(v1::VERTEX_ENCODING_CONTROL_PLANES);
+  const auto planes = Deform(request);
+  request.set_encoding(v1::VERTEX_ENCODING_FLOAT32);
+  const auto floats = Deform(request);
+  ASSERT_EQ(planes.size(), 2u);
+  ASSERT_EQ(floats.size(), 2u);
+
+  const v1::VolumeLayout& layout = planes[0].layout().volumes();
+  ASSERT_GT(layout.part_vertices_size(), 0);
+  auto mesh = ControlPlaneMesh::Create(convert::FromProto(layout));
+  ASSERT_TRUE(mesh.ok()) << mesh.status();
+  std::vector<Eigen::Vector3d> positions, normals;
+  ASSERT_EQ(mesh->Deform(planes[1].frame().data(), positions, normals),
+            absl::OkStatus());
+  VertexBlocks want;
+  ASSERT_EQ(DecodeFloats(floats[1].frame().data(), want), absl::OkStatus());
+  const auto& slots = floats[0].layout().slots();
+  ASSERT_EQ(static_cast<int>(positions.size()), slots.size());
+  for (int v = 0; v < slots.size(); ++v) {
+    EXPECT_LT((positions[v] - want.position(slots[v]).cast<double>()).norm(),
+              5 * kFloatM)
+        << v;
+    EXPECT_LT((normals[v] - want.normal(slots[v]).cast<double>()).norm(), 1e-3)
+        << v;
   }
 }
 
@@ -217,6 +235,33 @@ TEST_F(SkinStreamTest, FoldsAreToldWhenAsked) {
   const auto messages = Deform(request);
   ASSERT_GT(messages[0].frame().folds_size(), 0);
   EXPECT_LE(messages[0].frame().folds(0).least_jacobian(), 0);
+}
+
+TEST_F(SkinStreamTest, MusclesThatAreClampedAreToldWhenAsked) {
+  v1::UpdateMusclesRequest muscles;
+  muscles.set_name(skin_.name());
+  v1::Muscle& swollen = *muscles.add_muscles();
+  swollen.set_muscle_id("swollen");
+  swollen.set_link_id(skin_.links(0).link_id());
+  swollen.mutable_explicit_scales()->set_scale_s_p2(2);
+  swollen.mutable_explicit_scales()->set_scale_t_p2(2);
+  swollen.mutable_explicit_scales()->set_scale_s_p4(2);
+  swollen.mutable_explicit_scales()->set_scale_t_p4(2);
+  v1::Muscle& keeper = *muscles.add_muscles();
+  keeper.set_muscle_id("keeper");
+  keeper.set_link_id(skin_.links(0).link_id());
+  keeper.mutable_preserve_volume();
+  ASSERT_EQ(Call(&Stub::UpdateMuscles, muscles).status(), absl::OkStatus());
+  v1::DeformSkinRequest request = Request(v1::VERTEX_ENCODING_UNSPECIFIED, 1);
+  EXPECT_EQ(Deform(request)[0].frame().clamped_volumes_size(), 0);
+  request.set_include_warnings(true);
+  const v1::SkinFrame frame = Deform(request)[0].frame();
+  ASSERT_EQ(frame.clamped_volumes_size(), 1);
+  const v1::ClampedVolume& clamped = frame.clamped_volumes(0);
+  EXPECT_EQ(clamped.link_id(), skin_.links(0).link_id());
+  EXPECT_EQ(clamped.scale(), 0.8);
+  // What would have been needed undoes the swelling.
+  EXPECT_NEAR(clamped.wanted_scale(), 0.5, 0.05);
 }
 
 TEST_F(SkinStreamTest, ASessionsPoseIsDeformed) {

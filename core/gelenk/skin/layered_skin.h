@@ -67,8 +67,7 @@ class LayeredSkin : public Skin {
 
   size_t ByteSize() const override;
 
- private:
-  // A vertex that several volumes share: its tangents at rest in the
+  // A vertex that several volumes share, with two tangents at rest in the
   // coordinates of each, for the normal.
   struct SharedVertex {
     int vertex;
@@ -84,6 +83,14 @@ class LayeredSkin : public Skin {
     Eigen::Vector3d coordinate_slopes[2];
     double share_slopes[2];
   };
+  // By rising vertices; the last part of each is that of its own volume.
+  absl::Span<const SharedVertex> shared_vertices() const { return shared_; }
+  absl::Span<const VolumeShare> PartsOf(const SharedVertex& shared) const {
+    return absl::MakeConstSpan(parts_).subspan(shared.first_part,
+                                               shared.part_count);
+  }
+
+ private:
   struct Slots {
     std::vector<int> of_vertices;
     int block_count = 0;
