@@ -44,6 +44,22 @@ absl::Status Wrong(absl::string_view field, absl::string_view description) {
   return violations.ToStatus();
 }
 
+// The control points as a mesh: what the surface fits in.
+TriangleMesh ControlNet(const NurbsSurface& surface) {
+  TriangleMesh net;
+  net.positions = surface.points;
+  const int rows = surface.u.count();
+  const int columns = surface.v.count();
+  for (int i = 0; i + 1 < rows; ++i) {
+    for (int j = 0; j + 1 < columns; ++j) {
+      const int a = i * columns + j;
+      net.triangles.push_back({a, a + columns, a + 1});
+      net.triangles.push_back({a + 1, a + columns, a + columns + 1});
+    }
+  }
+  return net;
+}
+
 class SkinBuilding {
  public:
   SkinBuilding(std::shared_ptr<const Skeleton> skeleton, const v1::Skin& proto,
@@ -131,7 +147,10 @@ class SkinBuilding {
     absl::StatusOr<SkinMuscles> muscles =
         convert::FromProto(volumes.muscles(), volumes.fullness());
     if (!muscles.ok()) return muscles.status();
-    muscles_ = *std::move(muscles);
+    // A shape keeps its own where none are told.
+    if (volumes.muscles_size() > 0 || volumes.fullness_size() > 0) {
+      muscles_ = *std::move(muscles);
+    }
     return absl::OkStatus();
   }
 
@@ -190,7 +209,7 @@ class SkinBuilding {
     return are_given ? fitted->WithHalfExtents(half_extents) : fitted;
   }
 
-  SkinOr BuildNurbs(const VolumeRig& rig) const {
+  SkinOr BuildNurbs(const VolumeRig& rig) {
     if (proto_.layered_volumes().assignments_size() > 0) {
       return Wrong("layered_volumes.assignments",
                    "a NURBS surface has no vertices to assign");
@@ -198,6 +217,13 @@ class SkinBuilding {
     const absl::StatusOr<NurbsSurface> surface =
         convert::FromProto(proto_.nurbs());
     if (!surface.ok()) return Below("nurbs", surface.status());
+    const absl::Status status = CheckNurbs(*surface);
+    if (absl::IsUnimplemented(status)) {
+      return absl::UnimplementedError(
+          absl::StrCat("skin.nurbs.", status.message()));
+    }
+    if (!status.ok()) return Below("nurbs", status);
+    mesh_ = ControlNet(*surface);
     NurbsSkinOptions options;
     options.max_vertices =
         std::min(options.max_vertices, limits_.max_skin_vertices);
@@ -205,8 +231,7 @@ class SkinBuilding {
       options.tolerance_m = proto_.nurbs().tolerance_m();
     }
     absl::StatusOr<std::shared_ptr<const NurbsSkin>> skin =
-        NurbsSkin::Create(rig, *surface, options);
-    if (absl::IsUnimplemented(skin.status())) return skin.status();
+        NurbsSkin::Create(*Fitted(rig), *surface, options);
     if (!skin.ok()) return Below("nurbs", skin.status());
     return AsSkin(std::move(skin));
   }
@@ -234,6 +259,7 @@ class SkinBuilding {
     }
     WeightedSkin::Options options;
     options.rest_positions = links_.rest_positions;
+    options.rigid_joint = joint;
     return AsSkin(WeightedSkin::Create(
         skeleton_, mesh_, RigidWeights(vertex_count(), joint), options));
   }

@@ -205,6 +205,9 @@ absl::Status RebindVertices(ServiceState& state,
   convert::ToProto(base->stored.revision.class_counts,
                    response->mutable_counts_before());
 
+  // What is as it was makes no revision.
+  const bool changes =
+      result->binding.assignments != (*layered)->binding().assignments;
   const auto rig = (*layered)->shared_rig();
   absl::StatusOr<std::shared_ptr<const LayeredSkin>> skin = LayeredSkin::Create(
       rig, (*layered)->mesh(),
@@ -213,7 +216,7 @@ absl::Status RebindVertices(ServiceState& state,
   SkinRevision revision = MakeRevision(*std::move(skin));
   convert::ToProto(revision.class_counts, response->mutable_counts());
   response->set_stretched_edge_count(revision.stretched_edge_count);
-  if (request.dry_run()) {
+  if (request.dry_run() || !changes) {
     ToProto(base->stored, response->mutable_skin());
     return absl::OkStatus();
   }

@@ -1,7 +1,11 @@
 #include "server/rpc/skin_message.h"
 
+#include <set>
+#include <string>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "convert/muscle.h"
 #include "convert/skin_binding.h"
 #include "convert/skin_deformer.h"
@@ -14,6 +18,19 @@
 
 namespace gelenk::server {
 namespace {
+
+// Volumes that are inside out before anything bends.
+void AddFolds(const VolumeRig& rig, v1::Skin* proto) {
+  std::set<std::string> links;
+  for (const VolumeFold& fold : rig.FindFolds(rig.rest())) {
+    const SkinLink& link = rig.link(rig.volume_link(fold.volume));
+    links.insert(rig.skeleton().joint(link.joint).id);
+  }
+  if (links.empty()) return;
+  proto->add_warnings(absl::StrCat(
+      "volumes fold in the bind pose already, within the sections of ",
+      absl::StrJoin(links, ", ")));
+}
 
 void AddWarnings(const SkinRevision& revision, v1::Skin* proto) {
   const auto count = [&revision](BindingClass binding_class) {
@@ -28,6 +45,7 @@ void AddWarnings(const SkinRevision& revision, v1::Skin* proto) {
         revision.stretched_edge_count,
         " edges run between links that are not neighbours: they will stretch"));
   }
+  if (const VolumeRig* rig = RigOf(*revision.skin)) AddFolds(*rig, proto);
   const auto* nurbs = dynamic_cast<const NurbsSkin*>(revision.skin.get());
   if (nurbs != nullptr &&
       nurbs->estimated_error_m() > nurbs->options().tolerance_m) {
@@ -49,8 +67,11 @@ void AddDeformer(const Skin& skin, v1::Skin* proto) {
     return;
   }
   const auto* weighted = dynamic_cast<const WeightedSkin*>(&skin);
-  if (weighted != nullptr &&
-      weighted->method() == BlendMethod::kDualQuaternion) {
+  if (weighted != nullptr && weighted->rigid_joint() >= 0) {
+    proto->mutable_rigid_attachment()->set_joint_id(
+        skin.skeleton().joint(weighted->rigid_joint()).id);
+  } else if (weighted != nullptr &&
+             weighted->method() == BlendMethod::kDualQuaternion) {
     proto->mutable_dual_quaternion();
   } else {
     proto->mutable_linear_blend();

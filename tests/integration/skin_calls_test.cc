@@ -174,12 +174,13 @@ TEST_F(SkinCallsTest, ANurbsSurfaceIsTakenAndATrimmedOneIsNot) {
   EXPECT_LE(skin->estimated_error_m(), 1e-3);
   EXPECT_EQ(skin->links_size(), 3);
   surface.set_trim_curve_count(1);
-  EXPECT_EQ(Call(&Stub::CreateSkin, request).status().code(),
-            absl::StatusCode::kUnimplemented);
+  EXPECT_THAT(Call(&Stub::CreateSkin, request).status(),
+              Fails(absl::StatusCode::kUnimplemented,
+                    "skin.nurbs.trim_curve_count: trimmed surfaces"));
   surface.set_trim_curve_count(0);
   surface.set_u_knots(3, -1);
   EXPECT_THAT(Call(&Stub::CreateSkin, request).status(),
-              Fails(absl::StatusCode::kInvalidArgument, "skin.nurbs.u.knots"));
+              Fails(absl::StatusCode::kInvalidArgument, "skin.nurbs.u_knots"));
 }
 
 TEST_F(SkinCallsTest, BadSkinsAreRefusedByField) {
@@ -318,6 +319,8 @@ TEST_F(SkinCallsTest, BadEditsAreRefusedByFieldAndChangeNothing) {
   fails(none, "selector.kind");
   none.mutable_selector()->mutable_sphere()->set_radius_m(-1);
   fails(none, "selector.sphere.radius_m");
+  none.mutable_selector()->mutable_box()->mutable_highest()->set_y(-1);
+  fails(none, "selector.box.highest: want nothing below");
   none.mutable_selector()->mutable_ray();
   fails(none, "selector.ray.direction");
   none.mutable_selector()->set_component_vertex(-5);
@@ -329,6 +332,41 @@ TEST_F(SkinCallsTest, BadEditsAreRefusedByFieldAndChangeNothing) {
               Fails(absl::StatusCode::kInvalidArgument,
                     "removed_muscle_ids[0]: no muscle \"biceps\""));
   EXPECT_EQ(Get(skin.name())->revision(), 1);
+}
+
+TEST_F(SkinCallsTest, WhatChangesNothingMakesNoRevision) {
+  const v1::Skin skin = Create(TubeRequest(""));
+  v1::RebindVerticesRequest nothing =
+      RebindRequest(skin.name(), 1, skin.links(2).link_id());
+  nothing.mutable_selector()->mutable_sphere()->mutable_center()->set_x(50);
+  nothing.mutable_selector()->mutable_sphere()->set_radius_m(0.1);
+  const auto answer = Call(&Stub::RebindVertices, nothing);
+  ASSERT_TRUE(answer.ok()) << answer.status();
+  EXPECT_EQ(answer->skin().revision(), 1);
+  // Decisions that nobody made are taken back.
+  EXPECT_EQ(Call(&Stub::RebindVertices, RebindRequest(skin.name(), 9, ""))
+                ->skin()
+                .revision(),
+            1);
+}
+
+TEST_F(SkinCallsTest, AShapeKeepsItsMusclesUnlessOthersAreTold) {
+  v1::CreateSkinRequest request = ShapeRequest("arm", 500);
+  request.mutable_skin()->mutable_layered_volumes()->set_slenderness(6);
+  EXPECT_EQ(Create(request).layered_volumes().muscles_size(), 2);
+  request.mutable_skin()
+      ->mutable_layered_volumes()
+      ->add_fullness()
+      ->set_link_id("forearm");
+  EXPECT_EQ(Create(request).layered_volumes().muscles_size(), 0);
+}
+
+TEST_F(SkinCallsTest, ARigidPieceIsReadAsOne) {
+  v1::CreateSkinRequest request = TubeRequest("");
+  const std::string joint =
+      testing::ArmSkeletonRequest().skeleton().joints(1).joint_id();
+  request.mutable_skin()->mutable_rigid_attachment()->set_joint_id(joint);
+  EXPECT_EQ(Get(Create(request).name())->rigid_attachment().joint_id(), joint);
 }
 
 TEST_F(SkinCallsTest, MusclesAreMergedById) {

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "gelenk/base/violations.h"
 #include "gelenk/math/rotation.h"
 #include "gelenk/skeleton/skeleton_builder.h"
 #include "gelenk/skin/mesh_around.h"
@@ -286,9 +287,11 @@ absl::Span<const absl::string_view> SkinShapeNames() { return kNames; }
 absl::StatusOr<SkinShape> MakeSkinShape(absl::string_view name,
                                         int vertex_count) {
   if (vertex_count < kLeastVertices || vertex_count > kMostVertices) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("vertex_count: want ", kLeastVertices, " to ",
-                     kMostVertices, ", got ", vertex_count));
+    Violations violations;
+    violations.Add("vertex_count",
+                   absl::StrCat("want ", kLeastVertices, " to ", kMostVertices,
+                                ", got ", vertex_count));
+    return violations.ToStatus();
   }
   if (name == "cylinder") return Cylinder(vertex_count);
   if (name == "arm") return Arm(vertex_count);

@@ -130,7 +130,7 @@ class NurbsFitting {
     const Eigen::PartialPivLU<MatrixXd> by_u(Collocation(surface.u, us));
     const Eigen::PartialPivLU<MatrixXd> by_v(Collocation(surface.v, vs));
     for (const auto& [lu, field] :
-         {std::pair(&by_u, "u.knots"), std::pair(&by_v, "v.knots")}) {
+         {std::pair(&by_u, "u_knots"), std::pair(&by_v, "v_knots")}) {
       if (lu->rcond() > kSingular) continue;
       return absl::InvalidArgumentError(absl::StrCat(
           field,

@@ -26,38 +26,38 @@ void CheckAxis(const NurbsAxis& axis, const std::string& field,
                Violations& violations) {
   if (axis.degree < 1 || axis.degree > kMaxNurbsDegree) {
     violations.Add(
-        field + ".degree",
+        field + "_degree",
         absl::StrCat("want 1 to ", kMaxNurbsDegree, ", got ", axis.degree));
     return;
   }
   const int least = 2 * (axis.degree + 1);
   if (static_cast<int>(axis.knots.size()) < least) {
-    violations.Add(field + ".knots",
+    violations.Add(field + "_knots",
                    absl::StrCat("want at least ", least, " for degree ",
                                 axis.degree, ", got ", axis.knots.size()));
     return;
   }
   if (axis.count() > kMaxNurbsCount) {
-    violations.Add(field + ".knots",
+    violations.Add(field + "_knots",
                    absl::StrCat("want at most ", kMaxNurbsCount,
                                 " control points, got ", axis.count()));
     return;
   }
   for (size_t i = 0; i < axis.knots.size(); ++i) {
     if (!std::isfinite(axis.knots[i])) {
-      violations.Add(absl::StrCat(field, ".knots[", i, "]"),
+      violations.Add(absl::StrCat(field, "_knots[", i, "]"),
                      absl::StrCat("want a finite number, got ", axis.knots[i]));
       return;
     }
     if (i > 0 && axis.knots[i] < axis.knots[i - 1]) {
-      violations.Add(absl::StrCat(field, ".knots[", i, "]"),
+      violations.Add(absl::StrCat(field, "_knots[", i, "]"),
                      absl::StrCat("falls from ", axis.knots[i - 1], " to ",
                                   axis.knots[i]));
       return;
     }
   }
   if (!(axis.start() < axis.end())) {
-    violations.Add(field + ".knots",
+    violations.Add(field + "_knots",
                    absl::StrCat("the domain is empty, from ", axis.start(),
                                 " to ", axis.end()));
     return;
@@ -68,7 +68,7 @@ void CheckAxis(const NurbsAxis& axis, const std::string& field,
     const bool at_end =
         axis.knots[i] <= axis.start() || axis.knots[i] >= axis.end();
     if (repeated > (at_end ? axis.degree + 1 : axis.degree)) {
-      violations.Add(absl::StrCat(field, ".knots[", i, "]"),
+      violations.Add(absl::StrCat(field, "_knots[", i, "]"),
                      absl::StrCat(axis.knots[i], " is there ", repeated,
                                   " times: the surface is torn"));
       return;

@@ -81,7 +81,7 @@ absl::StatusOr<NurbsTessellation> TessellateNurbs(const NurbsFit& fit,
   const int columns = static_cast<int>(tessellation.v.parameters.size());
   if (static_cast<int64_t>(rows) * columns > max_vertices) {
     return absl::InvalidArgumentError(
-        absl::StrCat("tolerance: ", tolerance_m, " m makes ", rows, " x ",
+        absl::StrCat("tolerance_m: ", tolerance_m, " m makes ", rows, " x ",
                      columns, " vertices, want at most ", max_vertices));
   }
   tessellation.column_count = columns;

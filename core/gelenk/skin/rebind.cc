@@ -77,6 +77,12 @@ class Selection {
   void Select(const SelectBox& box) {
     CheckFinite(box.lowest, "box.lowest");
     CheckFinite(box.highest, "box.highest");
+    if ((box.lowest.array() > box.highest.array()).any()) {
+      violations_.Add(
+          "box.highest",
+          absl::StrCat("want nothing below box.lowest, got ", box.highest.x(),
+                       " ", box.highest.y(), " ", box.highest.z()));
+    }
     const Eigen::AlignedBox3d bounds(box.lowest, box.highest);
     SelectWhere([&](const Vector3d& p) { return bounds.contains(p); });
   }

@@ -86,6 +86,8 @@ struct VertexAssignment {
   int vertex = -1;
   std::string link_id;
   AssignmentScope scope = AssignmentScope::kChain;
+
+  bool operator==(const VertexAssignment&) const = default;
 };
 
 struct SkinBinding {

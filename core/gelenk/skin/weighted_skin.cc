@@ -176,6 +176,7 @@ WeightedSkin::WeightedSkin(const std::shared_ptr<const Skeleton>& skeleton,
            skeleton->rest_positions()),
       method_(options.method),
       influences_(weights.influences_per_vertex),
+      rigid_joint_(options.rigid_joint),
       joints_(weights.joints),
       joint_from_mesh_(JointFromMesh(*skeleton, options)) {
   for (size_t i = 0; i < weights.weights.size(); i += influences_) {

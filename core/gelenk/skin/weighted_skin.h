@@ -48,6 +48,8 @@ class WeightedSkin : public Skin {
     // One a joint ("inverse bind matrices"), or none: then those of the rest
     // pose. Dual quaternions need rigid ones.
     std::vector<Affine> joint_from_mesh;
+    // Of a rigid piece the joint that it was made for, for who asks.
+    int rigid_joint = -1;
   };
 
   // INVALID_ARGUMENT that lists what is wrong with mesh, weights or options.
@@ -56,6 +58,8 @@ class WeightedSkin : public Skin {
       const SkinWeights& weights, const Options& options);
 
   BlendMethod method() const { return method_; }
+  // -1 unless it is a rigid piece.
+  int rigid_joint() const { return rigid_joint_; }
 
   void Deform(const ConstVectorView& positions,
               const RigidTransform& world_from_skeleton,
@@ -75,6 +79,7 @@ class WeightedSkin : public Skin {
 
   BlendMethod method_;
   int influences_;
+  int rigid_joint_;
   std::vector<int> joints_;
   std::vector<float> weights_;
   std::vector<Eigen::Vector3f> positions_;  // at rest

@@ -162,10 +162,10 @@ TEST(NurbsSurfaceTest, SaysWhatIsWrong) {
   ASSERT_TRUE(CheckNurbs(good).ok());
   NurbsSurface bad = good;
   bad.v.knots[5] = bad.v.knots[4] - 2;
-  EXPECT_THAT(CheckNurbs(bad), Fails(code, "v.knots[5]: falls from"));
+  EXPECT_THAT(CheckNurbs(bad), Fails(code, "v_knots[5]: falls from"));
   bad = good;
   bad.u.degree = 8;
-  EXPECT_THAT(CheckNurbs(bad), Fails(code, "u.degree: want 1 to 7, got 8"));
+  EXPECT_THAT(CheckNurbs(bad), Fails(code, "u_degree: want 1 to 7, got 8"));
   bad = good;
   bad.u.knots.pop_back();
   EXPECT_THAT(CheckNurbs(bad), Fails(code, "points: the knots want 8 x 7"));
@@ -182,17 +182,17 @@ TEST(NurbsSurfaceTest, SaysWhatIsWrong) {
   EXPECT_THAT(CheckNurbs(bad), Fails(code, "the domain is empty"));
   bad = good;
   bad.v.knots[4] = HUGE_VAL;
-  EXPECT_THAT(CheckNurbs(bad), Fails(code, "v.knots[4]: want a finite"));
+  EXPECT_THAT(CheckNurbs(bad), Fails(code, "v_knots[4]: want a finite"));
   bad = good;
   bad.points[1].x() = std::nan("");
   EXPECT_THAT(CheckNurbs(bad), Fails(code, "points[1]"));
   bad = good;
   bad.u.knots.resize(3);
-  EXPECT_THAT(CheckNurbs(bad), Fails(code, "u.knots: want at least 6"));
+  EXPECT_THAT(CheckNurbs(bad), Fails(code, "u_knots: want at least 6"));
   bad = good;
   bad.v.knots.resize(kMaxNurbsCount + 5, 4);
   EXPECT_THAT(CheckNurbs(bad),
-              Fails(code, "v.knots: want at most 512 control points, got 513"));
+              Fails(code, "v_knots: want at most 512 control points, got 513"));
   bad = good;
   bad.trim_curve_count = 2;
   EXPECT_THAT(CheckNurbs(bad),
@@ -339,7 +339,7 @@ TEST_F(NurbsSkinTest, PointsThatDoNotDetermineTheNetAreRefused) {
   NurbsSurface open = Tube(0.2);
   for (size_t i = 0; i < open.v.knots.size(); ++i) open.v.knots[i] = i;
   EXPECT_THAT(NurbsSkin::Create(*rig_, open).status(),
-              Fails(absl::StatusCode::kInvalidArgument, "v.knots"));
+              Fails(absl::StatusCode::kInvalidArgument, "v_knots"));
   NurbsSkinOptions options;
   options.tolerance_m = 0;
   EXPECT_FALSE(NurbsSkin::Create(*rig_, Tube(0.2), options).ok());
