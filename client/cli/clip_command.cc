@@ -113,7 +113,11 @@ absl::Status RunProcess(const ClipOptions& options, std::string* output) {
   if (!file.ok()) return file.status();
   const absl::StatusOr<MotionClip> processed =
       Processed(options, file->clip, output);
-  if (!processed.ok()) return InFile(options.path, processed.status());
+  if (!processed.ok()) {
+    // A blend is of two files, and names the one that is wrong.
+    return options.blend->parsed() ? processed.status()
+                                   : InFile(options.path, processed.status());
+  }
   if (absl::Status status = WriteClip(
           *processed, file->form ? &*file->form : nullptr, options.out_path);
       !status.ok()) {

@@ -1,5 +1,9 @@
 #include "client/cli/command.h"
 
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_join.h"
 #include "client/cli/text/number_list.h"
 
 namespace gelenk::cli {
@@ -16,6 +20,19 @@ CLI::Validator Positive() {
         const absl::StatusOr<double> number = ParseNumber(text);
         if (number.ok() && *number > 0) return std::string();
         return absl::StrCat("want a number above 0, got \"", text, "\"");
+      },
+      "");
+}
+
+CLI::Validator EndsWith(std::vector<std::string> ends) {
+  return CLI::Validator(
+      [ends = std::move(ends)](std::string& path) {
+        for (const std::string& end : ends) {
+          if (absl::EndsWithIgnoreCase(path, end)) return std::string();
+        }
+        return absl::StrCat("want a file that ends with ",
+                            absl::StrJoin(ends, " or "), ", got \"", path,
+                            "\"");
       },
       "");
 }

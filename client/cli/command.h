@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -81,6 +82,9 @@ void AddChoice(CLI::App& app, const std::string& name, Value* value,
 
 // A number above 0.
 CLI::Validator Positive();
+
+// Accepts paths with one of those ends, which say what is written.
+CLI::Validator EndsWith(std::vector<std::string> ends);
 
 // Accepts what `parse` accepts; its error is the message to the user.
 template <class Parse>

@@ -123,6 +123,7 @@ Command AddFkCommand(CLI::App& app) {
       ->option_text("N");
   pose->require_option(0, 1);
   fk->add_option("--picture", options->picture_path, "Draw the pose")
+      ->check(EndsWith({".svg"}))
       ->option_text("FILE.svg");
   AddFormatOption(*fk, &options->format);
   fk->footer(

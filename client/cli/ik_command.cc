@@ -198,6 +198,7 @@ Command AddIkCommand(CLI::App& app) {
       ->option_text("FILE.json");
   ik->add_option("--picture", options->picture_path,
                  "Draw the pose and its targets")
+      ->check(EndsWith({".svg"}))
       ->option_text("FILE.svg");
   AddFormatOption(*ik, &options->format);
   ik->parse_complete_callback([options] {

@@ -249,6 +249,7 @@ Command AddRetargetCommand(CLI::App& app) {
   retarget
       ->add_option("--picture", options->picture_path,
                    "Both motions as figures over time, with their contacts")
+      ->check(EndsWith({".svg"}))
       ->option_text("SVG");
   AddFormatOption(*retarget, &options->format);
   retarget->footer(

@@ -1,8 +1,6 @@
 // gelenk skin: surfaces on skeletons: bound, corrected, deformed, exported.
 #include <google/protobuf/util/json_util.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,29 +12,28 @@
 #include "client/cli/command.h"
 #include "client/cli/file_bytes.h"
 #include "client/cli/patient_call.h"
-#include "client/cli/picture/mesh_picture.h"
 #include "client/cli/service.h"
 #include "client/cli/skin/binding_text.h"
-#include "client/cli/skin/deformed_frames.h"
+#include "client/cli/skin/deform_step.h"
 #include "client/cli/skin/exported_skin.h"
 #include "client/cli/skin/served_skin.h"
 #include "client/cli/skin/skin_demo.h"
+#include "client/cli/skin/skin_list.h"
 #include "client/cli/skin/skin_options.h"
-#include "client/cli/text/table.h"
-#include "convert/geometry.h"
 
 namespace gelenk::cli {
 namespace {
 
-// A picture of a clip shows so many of its frames.
-constexpr size_t kPanels = 8;
-
 using Connection = std::shared_ptr<client::Connection>;
 
-// Assignments of an earlier `rebind`; none where there is no file yet.
-absl::StatusOr<v1::LayeredVolumes> ReadAssignments(const std::string& path) {
+// Assignments of an earlier `rebind`, which begins the file where there is none
+// yet.
+absl::StatusOr<v1::LayeredVolumes> ReadAssignments(const std::string& path,
+                                                   bool may_be_missing) {
   v1::LayeredVolumes volumes;
-  if (path.empty() || !std::filesystem::exists(path)) return volumes;
+  if (path.empty() || (may_be_missing && !std::filesystem::exists(path))) {
+    return volumes;
+  }
   const absl::StatusOr<std::string> json = ReadFile(path);
   if (!json.ok()) return json.status();
   const auto parsed =
@@ -61,7 +58,7 @@ absl::Status WriteAssignments(const v1::Binding& binding,
 absl::StatusOr<std::unique_ptr<ServedSkin>> OpenSkin(
     const SkinOptions& options, const Connection& connection) {
   absl::StatusOr<v1::LayeredVolumes> volumes =
-      ReadAssignments(options.assignments_path);
+      ReadAssignments(options.assignments_path, options.rebind->parsed());
   if (!volumes.ok()) return volumes.status();
   return ServedSkin::Open(connection, options.source, options.keep_id,
                           *volumes);
@@ -90,19 +87,23 @@ absl::Status RunBind(const SkinOptions& options, const Connection& connection,
   const auto served = OpenSkin(options, connection);
   if (!served.ok()) return served.status();
   const v1::Skin& skin = (*served)->skin();
-  if (!skin.has_binding_counts()) {
-    absl::StrAppend(output, skin.name(), ": ", skin.vertex_count(),
-                    " vertices, deformed by weights: nothing is bound\n");
-    return absl::OkStatus();
+  // Only of a mesh in volumes.
+  v1::Binding binding;
+  if (skin.has_binding_counts()) {
+    absl::StatusOr<v1::Binding> read = ReadBinding(
+        connection, absl::StrCat(skin.name(), "@", skin.revision()), whole);
+    if (!read.ok()) return read.status();
+    binding = *std::move(read);
   }
-  const absl::StatusOr<v1::Binding> binding = ReadBinding(
-      connection, absl::StrCat(skin.name(), "@", skin.revision()), whole);
-  if (!binding.ok()) return binding.status();
   if (options.format == Format::kJson) {
-    *output += JsonText(BindingJson(skin, *binding));
+    Json json = BindingJson(skin, binding);
+    for (const std::string& warning : (*served)->warnings()) {
+      json["skin"]["warnings"].push_back(warning);
+    }
+    *output += JsonText(json);
     return absl::OkStatus();
   }
-  *output += BindingText(skin, *binding);
+  *output += BindingText(skin, binding);
   AppendWarnings(**served, output);
   if (!options.keep_id.empty()) {
     absl::StrAppend(output, "stays as ", skin.name(), "\n");
@@ -164,85 +165,13 @@ absl::Status RunRebind(const SkinOptions& options, const Connection& connection,
   return absl::OkStatus();
 }
 
-// The poses that are asked for; else the rest pose.
-absl::StatusOr<PoseList> PosesFor(const SkinOptions& options,
-                                  const v1::Skeleton& skeleton) {
-  absl::StatusOr<PoseList> list = PosesOf(options.poses);
-  if (list.ok() && list->poses.empty()) {
-    *list->poses.emplace_back().mutable_pose() = skeleton.rest_pose();
-  }
-  return list;
-}
-
-std::string FramesText(const DeformedFrames& deformed) {
-  int64_t bytes = 0, most = 0;
-  int keyframes = 0, folded = 0, clamped = 0;
-  for (const DeformedFrame& frame : deformed.frames) {
-    bytes += frame.byte_size;
-    most = std::max(most, frame.byte_size);
-    keyframes += frame.is_keyframe ? 1 : 0;
-    folded += frame.fold_count > 0 ? 1 : 0;
-    clamped += frame.clamped_count > 0 ? 1 : 0;
-  }
-  const auto count = static_cast<int64_t>(deformed.frames.size());
-  Facts facts;
-  facts.Add("frames", absl::StrCat(count, ", ", keyframes, " keyframes"));
-  facts.Add("bytes a frame", absl::StrCat(bytes / count, ", at most ", most));
-  facts.Add("frames that fold", absl::StrCat(folded));
-  facts.Add("with clamped muscles", absl::StrCat(clamped));
-  return facts.ToString();
-}
-
-absl::Status DrawFrames(const DeformedFrames& deformed,
-                        const v1::Skeleton& skeleton, const std::string& title,
-                        const std::string& path) {
-  if (deformed.frames.front().positions.empty()) {
-    return absl::InvalidArgumentError(
-        "--picture: control planes are drawn by who deforms by them");
-  }
-  std::vector<MeshPanel> panels;
-  const size_t count = std::min(kPanels, deformed.frames.size());
-  for (size_t i = 0; i < count; ++i) {
-    const size_t frame =
-        count == 1 ? 0 : i * (deformed.frames.size() - 1) / (count - 1);
-    panels.push_back(
-        {absl::StrCat("frame ", frame), deformed.frames[frame].positions});
-  }
-  MeshView view;
-  view.up = convert::FromProto(skeleton.up());
-  if (std::abs(view.up.z()) > 0.9)
-    view.toward_viewer = -Eigen::Vector3d::UnitY();
-  return WriteFile(path,
-                   MeshPictureSvg(title, deformed.triangles, panels, view));
-}
-
-absl::Status RunDeform(const SkinOptions& options, const Connection& connection,
+absl::Status RunExport(const SkinOptions& options, const Connection& connection,
                        std::string* output) {
   const auto served = OpenSkin(options, connection);
   if (!served.ok()) return served.status();
   const absl::StatusOr<v1::Skeleton> skeleton = (*served)->ReadSkeleton();
   if (!skeleton.ok()) return skeleton.status();
-  const absl::StatusOr<PoseList> list = PosesFor(options, *skeleton);
-  if (!list.ok()) return list.status();
-  const absl::StatusOr<DeformedFrames> deformed = DeformSkin(
-      *connection, (*served)->skin().name(), list->poses, options.encoding);
-  if (!deformed.ok()) return deformed.status();
-  *output += FramesText(*deformed);
-  AppendWarnings(**served, output);
-  if (options.picture_path.empty()) return absl::OkStatus();
-  const absl::Status status =
-      DrawFrames(*deformed, *skeleton, (*served)->skin().display_name(),
-                 options.picture_path);
-  if (!status.ok()) return status;
-  absl::StrAppend(output, "wrote ", options.picture_path, "\n");
-  return absl::OkStatus();
-}
-
-absl::Status RunExport(const SkinOptions& options, const Connection& connection,
-                       std::string* output) {
-  const auto served = OpenSkin(options, connection);
-  if (!served.ok()) return served.status();
-  const absl::StatusOr<PoseList> list = PosesOf(options.poses);
+  const absl::StatusOr<PoseList> list = PosesOf(options.poses, *skeleton);
   if (!list.ok()) return list.status();
   const absl::StatusOr<ExportedSkin> exported = ExportSkin(
       *connection, (*served)->skin().name(), list->poses, list->frame_time);
@@ -258,8 +187,32 @@ absl::Status RunExport(const SkinOptions& options, const Connection& connection,
   return absl::OkStatus();
 }
 
+// What only a server keeps.
+absl::Status CheckServer(const SkinOptions& options,
+                         const GlobalOptions& globals) {
+  if (!globals.server.empty()) {
+    if (options.keep_id.empty() ||
+        !absl::StartsWith(options.source.path, "skins/")) {
+      return absl::OkStatus();
+    }
+    return absl::InvalidArgumentError(
+        absl::StrCat("--keep: ", options.source.path, " is there already"));
+  }
+  if (!options.keep_id.empty()) {
+    return absl::InvalidArgumentError(
+        "--keep: want a --server that keeps the skin");
+  }
+  if (options.list->parsed() || options.remove->parsed()) {
+    return absl::InvalidArgumentError("--server: want the one with the skins");
+  }
+  return absl::OkStatus();
+}
+
 absl::Status RunSkin(const SkinOptions& options, const GlobalOptions& globals,
                      std::string* output) {
+  if (absl::Status status = CheckServer(options, globals); !status.ok()) {
+    return status;
+  }
   const auto service = Service::Open(globals.server);
   if (!service.ok()) return service.status();
   const Connection& connection = (*service)->connection();
@@ -270,7 +223,19 @@ absl::Status RunSkin(const SkinOptions& options, const GlobalOptions& globals,
     return RunBind(options, connection, true, output);
   }
   if (options.rebind->parsed()) return RunRebind(options, connection, output);
-  if (options.deform->parsed()) return RunDeform(options, connection, output);
+  if (options.deform->parsed()) {
+    const auto served = OpenSkin(options, connection);
+    if (!served.ok()) return served.status();
+    absl::Status status = RunDeform(options, *connection, **served, output);
+    if (status.ok()) AppendWarnings(**served, output);
+    return status;
+  }
+  if (options.list->parsed()) {
+    return PrintSkins(*connection, options.format, output);
+  }
+  if (options.remove->parsed()) {
+    return DeleteSkin(*connection, options.source.path);
+  }
   if (options.demo->parsed()) {
     return RunSkinDemo(options.demonstration, connection, output);
   }

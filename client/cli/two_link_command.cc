@@ -196,6 +196,7 @@ Command AddTwoLinkCommand(CLI::App& app) {
   two_link
       ->add_option("--picture", options->picture_path,
                    "Draw reach, target and solutions")
+      ->check(EndsWith({".svg"}))
       ->option_text("FILE.svg");
   two_link->footer("Example:\n  gelenk two-link --lengths 10,10 --target 10,0");
   return CommandOf(two_link, options);

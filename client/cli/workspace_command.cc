@@ -155,6 +155,7 @@ Command AddWorkspaceCommand(CLI::App& app) {
                    "mean_manipulability")
       ->option_text("FILE.csv");
   workspace->add_option("--picture", options->picture_path, "Draw the reach")
+      ->check(EndsWith({".svg"}))
       ->option_text("FILE.svg");
   AddFormatOption(*workspace, &options->format);
   workspace->footer(

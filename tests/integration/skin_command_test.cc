@@ -52,6 +52,30 @@ TEST_P(SkinCommandTest, DecisionsAreKeptInAFile) {
   const json answer = RunJson({"skin", "bind", "arm", "--vertices", "800",
                                "--assignments", "hand.json"});
   EXPECT_EQ(answer["binding"]["counts"]["userCount"], 10);
+  // A shape keeps its muscles beside them.
+  EXPECT_EQ(answer["skin"]["layeredVolumes"]["muscles"].size(), 2u);
+  // Only rebind begins such a file.
+  EXPECT_THAT(Run({"skin", "bind", "arm", "--assignments", "none.json"}).err,
+              HasSubstr("none.json"));
+}
+
+TEST_P(SkinCommandTest, DeformTellsWhichLinksFoldAndWritesTheLastFrame) {
+  const Ending ending =
+      Run({"skin", "deform", "arm", "--vertices", "800", "--pose",
+           "0,0,0,0,0,0,1,2.9,0,0,0,1", "--out", "bent.obj"});
+  EXPECT_EQ(ending.exit_code, 0) << ending.err;
+  EXPECT_THAT(ending.out, HasSubstr("LINK"));
+  EXPECT_THAT(ending.out, HasSubstr("forearm"));
+  const std::string obj = Read(folder_ / "bent.obj");
+  EXPECT_THAT(obj, HasSubstr("v "));
+  EXPECT_THAT(obj, HasSubstr("f "));
+  // Control planes are deformed by on this side.
+  EXPECT_EQ(Run({"skin", "deform", "arm", "--vertices", "800", "--pose",
+                 "0,0,0,0,0,0,1,2.9,0,0,0,1", "--encoding", "planes", "--out",
+                 "planes.obj"})
+                .exit_code,
+            0);
+  EXPECT_EQ(Read(folder_ / "planes.obj").size() > obj.size() / 2, true);
 }
 
 TEST_P(SkinCommandTest, DeformTellsWhatFramesTakeAndDrawsThem) {
@@ -62,6 +86,22 @@ TEST_P(SkinCommandTest, DeformTellsWhatFramesTakeAndDrawsThem) {
   EXPECT_EQ(ending.exit_code, 0) << ending.err;
   EXPECT_THAT(ending.out, HasSubstr("20, 1 keyframes"));
   EXPECT_THAT(Read(folder_ / "walk.svg"), HasSubstr("frame 19"));
+}
+
+TEST_P(SkinCommandTest, AMotionOfAnotherBodyIsBroughtOntoTheSkin) {
+  const Ending other = Run({"skin", "deform", "humanoid", "--vertices", "500",
+                            "--motion", "walk.bvh"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("another skeleton wants --retarget"));
+  const Ending ending =
+      Run({"skin", "deform", "humanoid", "--vertices", "500", "--motion",
+           "walk.bvh", "--retarget", "--frames", "10", "--encoding", "delta"});
+  EXPECT_EQ(ending.exit_code, 0) << ending.err;
+  EXPECT_THAT(ending.out, HasSubstr("10, 1 keyframes"));
+  EXPECT_EQ(Run({"skin", "export", "humanoid", "--vertices", "500", "--motion",
+                 "walk.bvh", "--retarget", "--out", "walking.glb"})
+                .exit_code,
+            0);
 }
 
 TEST_P(SkinCommandTest, ExportIsReadByOthers) {
@@ -95,7 +135,19 @@ TEST_P(SkinCommandTest, MistakesAreNamed) {
   fails({"skin", "bind", "nose"}, 1, "want skins/NAME, cylinder");
   fails({"skin", "bind", "skin.obj"}, 1, "--skeleton");
   fails({"skin", "bind", "bad.obj", "--skeleton", "walk.bvh"}, 1, "line 1");
-  fails({"skin", "bind", "arm", "--method", "linear"}, 1, "has no weights");
+  fails({"skin", "bind", "arm", "--method", "linear"}, 1, "--method: is of");
+  fails({"skin", "bind", "arm", "--skeleton", "walk.bvh"}, 1,
+        "--skeleton: is of an .obj or .json file, not of \"arm\"");
+  fails({"skin", "bind", "arm", "--unit", "0.01"}, 1, "--unit: is of");
+  fails({"skin", "bind", "skin.obj", "--skeleton", "walk.bvh", "--mesh", "m"},
+        1, "--mesh: is of");
+  fails({"skin", "bind", "skin.obj", "--vertices", "9"}, 1, "--vertices: is");
+  fails({"skin", "rebind", "skins/a", "--undo", "--dry-run"}, 2, "--undo");
+  fails({"skin", "rebind", "skins/a", "--undo", "--ids", "1"}, 2, "--undo");
+  fails({"skin", "export", "arm", "--out", "arm.obj"}, 2, ".glb");
+  fails({"skin", "demo", "--picture", "arm.png"}, 2, ".svg");
+  fails({"skin", "delete", "arm"}, 1,
+        GetParam() == Host::kServer ? "want skins/NAME" : "--server");
   fails({"skin", "rebind", "arm", "--link", "hand"}, 1, "selector.kind");
   fails({"skin", "rebind", "arm", "--ids", "5-1"}, 2, "0-99,120");
   fails({"skin", "rebind", "arm", "--sphere", "1,2"}, 1, "--sphere");
@@ -130,6 +182,21 @@ TEST_P(SkinCommandTest, OnAServerASkinStaysAndEditsAreUndone) {
   EXPECT_EQ(RunJson({"skin", "bind",
                      "skins/my-arm@2"})["binding"]["counts"]["userCount"],
             10);
+  EXPECT_THAT(Run({"skin", "bind", "skins/my-arm", "--keep", "other"}).err,
+              HasSubstr("--keep: skins/my-arm is there already"));
+  const json list = RunJson({"skin", "list"});
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0]["name"], "skins/my-arm");
+  EXPECT_THAT(Run({"skin", "list"}).out, HasSubstr("skins/my-arm"));
+  EXPECT_EQ(Run({"skin", "delete", "skins/my-arm"}).exit_code, 0);
+  EXPECT_TRUE(RunJson({"skin", "list"}).empty());
+  EXPECT_EQ(Run({"skin", "delete", "skins/my-arm"}).exit_code, 1);
+}
+
+TEST_F(CommandLineTest, WithoutAServerNoSkinStays) {
+  EXPECT_THAT(Run({"skin", "bind", "arm", "--keep", "my-arm"}).err,
+              HasSubstr("--keep: want a --server"));
+  EXPECT_THAT(Run({"skin", "list"}).err, HasSubstr("--server"));
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ void AddClipSteps(CLI::App& clip, CLI::Option* server, ClipOptions* options) {
       ->add_option("--picture", options->picture_path,
                    "The motion as figures over time, with its contacts")
       ->excludes(server)
+      ->check(EndsWith({".svg"}))
       ->option_text("SVG");
   AddFormatOption(*options->measure, &options->format);
   options->smooth =

@@ -41,6 +41,21 @@ std::string LinkId(const v1::Binding& binding, int link) {
   return binding.links(link).link_id();
 }
 
+std::string DeformerText(const v1::Skin& skin) {
+  switch (skin.deformer_case()) {
+    case v1::Skin::kLinearBlend:
+      return "weights, linearly";
+    case v1::Skin::kDualQuaternion:
+      return "weights, dual quaternions";
+    case v1::Skin::kRigidAttachment:
+      return absl::StrCat("joint ", skin.rigid_attachment().joint_id());
+    default:
+      return absl::StrCat("volumes of ", skin.links_size(), " links, ",
+                          skin.layered_volumes().muscles_size(), " muscles",
+                          skin.has_binding_counts() ? "" : ", as a surface");
+  }
+}
+
 void AppendEdges(const v1::Binding& binding, std::string* text) {
   if (binding.stretched_edge_count() == 0) return;
   absl::StrAppend(text, "\n", binding.stretched_edge_count(),
@@ -97,12 +112,19 @@ std::string RunsText(const v1::VertexRuns& runs) {
 
 std::string BindingText(const v1::Skin& skin, const v1::Binding& binding) {
   Facts facts;
-  facts.Add("skin", binding.name());
+  facts.Add("skin", absl::StrCat(skin.name(), "@", skin.revision()));
   facts.Add("skeleton", skin.skeleton());
+  facts.Add("deformed by", DeformerText(skin));
   facts.Add("vertices", absl::StrCat(skin.vertex_count()));
   facts.Add("triangles", absl::StrCat(skin.triangle_count()));
   facts.Add("memory", absl::StrCat(Fixed(skin.byte_size() / 1e6, 1), " MB"));
-  std::string text = facts.ToString() + "\n";
+  if (skin.estimated_error_m() > 0) {
+    facts.Add("off in a bend by",
+              absl::StrCat(Fixed(1000 * skin.estimated_error_m(), 3), " mm"));
+  }
+  std::string text = facts.ToString();
+  if (!skin.has_binding_counts()) return text;
+  text += "\n";
   std::vector<Column> columns = {{"LINK"}};
   for (const char* title :
        {"VERTICES", "UNIQUE", "BLEND", "AMBIGUOUS", "OUTSIDE", "USER"}) {
@@ -128,7 +150,9 @@ Json BindingJson(const v1::Skin& skin, const v1::Binding& binding) {
     google::protobuf::util::MessageToJsonString(message, &json, options).ok();
     return Json::parse(json, nullptr, /*allow_exceptions=*/false);
   };
-  return {{"skin", json_of(skin)}, {"binding", json_of(binding)}};
+  Json json = {{"skin", json_of(skin)}};
+  if (skin.has_binding_counts()) json["binding"] = json_of(binding);
+  return json;
 }
 
 std::string RebindText(const v1::RebindVerticesResponse& response,

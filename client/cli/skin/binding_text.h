@@ -10,7 +10,8 @@
 
 namespace gelenk::cli {
 
-// Classes link by link, stretched edges, and, of a report in detail, vertices.
+// What it is; of a mesh in volumes also `binding`: classes link by link,
+// stretched edges, and, of a report in detail, vertices.
 std::string BindingText(const v1::Skin& skin, const v1::Binding& binding);
 Json BindingJson(const v1::Skin& skin, const v1::Binding& binding);
 

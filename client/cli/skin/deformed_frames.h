@@ -3,7 +3,10 @@
 #define CLIENT_CLI_SKIN_DEFORMED_FRAMES_H_
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,25 +17,36 @@
 
 namespace gelenk::cli {
 
-struct DeformedFrame {
-  // In the order of the vertices, world frame, m; none of control planes, which
-  // the client would have to deform itself.
-  std::vector<Eigen::Vector3d> positions;
-  int64_t byte_size = 0;
-  bool is_keyframe = false;
+// What happened to the volumes of a link over all frames.
+struct LinkTrouble {
+  // Frames in which a volume of it folds, and the worst of them.
   int fold_count = 0;
-  int clamped_count = 0;
+  int worst_fold_frame = 0;
+  double least_jacobian = 0;
+  // Frames in which a muscle of it wanted more than it got.
+  int clamp_count = 0;
 };
 
 struct DeformedFrames {
   std::vector<Triangle> triangles;
-  std::vector<DeformedFrame> frames;
+  int keyframe_count = 0;
+  int64_t bytes = 0;
+  int64_t most_bytes = 0;
+  // Frame by frame, how many volumes fold; and frames with clamped muscles.
+  std::vector<int> folds;
+  int clamp_count = 0;
+  std::map<std::string, LinkTrouble> links;
+  // Of the frames that were asked for, by their indices; in the order of the
+  // vertices, world frame, m.
+  std::map<size_t, std::vector<Eigen::Vector3d>> positions;
 };
 
-// Asks in as many calls as the service's bound on poses wants.
+// Asks in as many calls as the service's bound on poses wants, and keeps the
+// vertices of the frames of `kept`.
 absl::StatusOr<DeformedFrames> DeformSkin(
     client::Connection& connection, const std::string& skin,
-    const std::vector<v1::SkinPose>& poses, v1::VertexEncoding encoding);
+    const std::vector<v1::SkinPose>& poses, v1::VertexEncoding encoding,
+    const std::set<size_t>& kept);
 
 }  // namespace gelenk::cli
 

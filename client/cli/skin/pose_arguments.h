@@ -9,19 +9,23 @@
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "client/cli/motion/motion_file.h"
 #include "gelenk/v1/skin_service.pb.h"
 
 namespace gelenk::cli {
 
 struct PoseArguments {
   std::string pose;
-  std::string bvh_path;
-  std::optional<double> unit_m;
+  std::string motion_path;
+  MotionFileOptions motion;
+  // The motion is of another body.
+  bool retargets = false;
   int first_frame = 0;
   std::optional<int> frame_count;
 };
 
-// --pose, or --bvh with --unit, --first and --frames.
+// --pose, or --bvh with --retarget, --bvh-unit, --animation, --first and
+// --frames.
 void AddPoseOptions(CLI::App& app, PoseArguments* arguments);
 
 struct PoseList {
@@ -30,8 +34,10 @@ struct PoseList {
   absl::Duration frame_time = absl::Seconds(1) / 30;
 };
 
-// Without any, none. Errors name the option or the file.
-absl::StatusOr<PoseList> PosesOf(const PoseArguments& arguments);
+// Of `skeleton`. Without any, none. INVALID_ARGUMENT naming the option or the
+// file; a motion on other joints says so once.
+absl::StatusOr<PoseList> PosesOf(const PoseArguments& arguments,
+                                 const v1::Skeleton& skeleton);
 
 }  // namespace gelenk::cli
 

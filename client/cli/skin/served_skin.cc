@@ -12,10 +12,12 @@ absl::StatusOr<std::unique_ptr<ServedSkin>> ServedSkin::Open(
     std::shared_ptr<client::Connection> connection,
     const SkinSourceOptions& source, const std::string& keep_id,
     const v1::LayeredVolumes& volumes) {
+  absl::Status status = CheckSourceOptions(source);
+  if (!status.ok()) return status;
   std::unique_ptr<ServedSkin> served(new ServedSkin(std::move(connection)));
-  const absl::Status status = absl::StartsWith(source.path, "skins/")
-                                  ? served->Find(source.path)
-                                  : served->Create(source, keep_id, volumes);
+  status = absl::StartsWith(source.path, "skins/")
+               ? served->Find(source.path)
+               : served->Create(source, keep_id, volumes);
   if (!status.ok()) return status;
   return served;
 }
@@ -58,6 +60,12 @@ absl::Status ServedSkin::Create(const SkinSourceOptions& options,
   request.set_request_id(UniqueId());
   *request.mutable_skin() = std::move(source->skin);
   if (volumes.assignments_size() > 0) {
+    const auto deformer = request.skin().deformer_case();
+    if (deformer != v1::Skin::kLayeredVolumes &&
+        deformer != v1::Skin::DEFORMER_NOT_SET) {
+      return absl::InvalidArgumentError(
+          "--assignments: are of vertices in volumes, the skin has weights");
+    }
     *request.mutable_skin()->mutable_layered_volumes()->mutable_assignments() =
         volumes.assignments();
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,19 +82,18 @@ std::string RevisionName(const v1::Skin& skin) {
 void AddPanels(const DeformedFrames& deformed, absl::string_view what,
                std::vector<MeshPanel>& panels, Table& table) {
   const double rest =
-      EnclosedVolume(deformed.frames[0].positions, deformed.triangles);
-  for (size_t i = 0; i < deformed.frames.size(); ++i) {
-    const DeformedFrame& frame = deformed.frames[i];
+      EnclosedVolume(deformed.positions.at(0), deformed.triangles);
+  for (const auto& [i, positions] : deformed.positions) {
     const double change =
-        EnclosedVolume(frame.positions, deformed.triangles) / rest - 1;
+        EnclosedVolume(positions, deformed.triangles) / rest - 1;
     const std::string volume =
         absl::StrCat(change < 0 ? "" : "+", Fixed(100 * change, 1), " %");
     panels.push_back(
         {absl::StrCat(kBendsDegrees[i], "°, ", what, i > 0 ? ", volume " : "",
                       i > 0 ? volume : ""),
-         frame.positions});
+         positions});
     table.AddRow({absl::StrCat(kBendsDegrees[i]), std::string(what), volume,
-                  absl::StrCat(frame.fold_count)});
+                  absl::StrCat(deformed.folds[i])});
   }
 }
 
@@ -122,10 +122,13 @@ absl::Status RunSkinDemo(const SkinDemoOptions& options,
                {"VOLUME", Align::kRight},
                {"FOLDS", Align::kRight}});
   std::vector<Triangle> triangles;
+  const std::vector<v1::SkinPose> stills = bending.Stills();
+  std::set<size_t> all;
+  for (size_t i = 0; i < stills.size(); ++i) all.insert(i);
   for (const v1::Skin* revision : {&skin, &*relaxed}) {
     const absl::StatusOr<DeformedFrames> deformed =
-        DeformSkin(*connection, RevisionName(*revision), bending.Stills(),
-                   v1::VERTEX_ENCODING_FLOAT32);
+        DeformSkin(*connection, RevisionName(*revision), stills,
+                   v1::VERTEX_ENCODING_FLOAT32, all);
     if (!deformed.ok()) return deformed.status();
     AddPanels(*deformed, revision == &skin ? "biceps on" : "off", panels,
               table);

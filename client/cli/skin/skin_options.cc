@@ -54,8 +54,15 @@ void AddRebindOptions(CLI::App& rebind, SkinOptions* options) {
                                  "To the link's chain, or to the very link; "
                                  "default chain");
   rebind.add_flag("--dry-run", options->dry_run, "Only say what would be");
-  rebind.add_flag("--undo", options->undo,
-                  "Go back to the revision before; of skins/NAME");
+  CLI::Option* undo = rebind.add_flag(
+      "--undo", options->undo, "Go back to the revision before; of skins/NAME");
+  for (CLI::Option* other : rebind.get_options()) {
+    if (other != undo && !other->get_positional() &&
+        other != rebind.get_help_ptr()) {
+      undo->excludes(other);
+    }
+  }
+  for (CLI::App* group : rebind.get_subcommands({})) group->excludes(undo);
 }
 
 void AddDeformOptions(CLI::App& deform, SkinOptions* options) {
@@ -70,13 +77,21 @@ void AddDeformOptions(CLI::App& deform, SkinOptions* options) {
   deform
       .add_option("--picture", options->picture_path,
                   "Draw up to eight of the frames")
+      ->check(EndsWith({".svg"}))
       ->option_text("FILE.svg");
+  deform
+      .add_option("--out", options->out_path,
+                  "Write the vertices of the last frame")
+      ->check(EndsWith({".obj"}))
+      ->option_text("FILE.obj");
 }
 
 void AddDemoOptions(CLI::App& demo, SkinDemoOptions* options) {
   demo.add_option("--picture", options->picture_path, "Draw it")
+      ->check(EndsWith({".svg"}))
       ->option_text("FILE.svg");
   demo.add_option("--out", options->glb_path, "As an animated glTF file")
+      ->check(EndsWith({".glb"}))
       ->option_text("FILE.glb");
   demo.add_option("--vertices", options->vertex_count,
                   "About so many; default 3000")
@@ -109,7 +124,16 @@ void AddSkinSteps(CLI::App& skin, SkinOptions* options) {
   AddPoseOptions(*options->do_export, &options->poses);
   options->do_export->add_option("--out", options->out_path, "A .glb file")
       ->required()
+      ->check(EndsWith({".glb"}))
       ->option_text("FILE.glb");
+  options->list = skin.add_subcommand("list", "The skins on a server");
+  AddFormatOption(*options->list, &options->format);
+  options->remove =
+      skin.add_subcommand("delete", "Deletes a skin with all its revisions");
+  options->remove
+      ->add_option("SKIN", options->source.path, "skins/NAME on a server")
+      ->required()
+      ->option_text("");
   options->demo = skin.add_subcommand(
       "demo",
       "An arm bends from 0 to 150 degrees, with its biceps and without");

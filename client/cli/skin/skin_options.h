@@ -21,6 +21,8 @@ struct SkinOptions {
   CLI::App* rebind = nullptr;
   CLI::App* deform = nullptr;
   CLI::App* do_export = nullptr;
+  CLI::App* list = nullptr;
+  CLI::App* remove = nullptr;
   CLI::App* demo = nullptr;
 
   SkinSourceOptions source;

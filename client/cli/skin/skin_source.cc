@@ -135,7 +135,8 @@ absl::StatusOr<SkinSource> ReadAny(const SkinSourceOptions& options) {
   if (IsShape(options.path)) {
     SkinSource source;
     source.skin.mutable_shape()->set_shape_id(options.path);
-    source.skin.mutable_shape()->set_vertex_count(options.vertex_count);
+    source.skin.mutable_shape()->set_vertex_count(
+        options.vertex_count.value_or(0));
     return source;
   }
   if (ends_with(".gltf") || ends_with(".glb")) return FromGltf(options);
@@ -149,13 +150,40 @@ absl::StatusOr<SkinSource> ReadAny(const SkinSourceOptions& options) {
 
 }  // namespace
 
+absl::Status CheckSourceOptions(const SkinSourceOptions& options) {
+  const std::string& path = options.path;
+  const bool is_gltf = absl::EndsWithIgnoreCase(path, ".gltf") ||
+                       absl::EndsWithIgnoreCase(path, ".glb");
+  const bool is_obj = absl::EndsWithIgnoreCase(path, ".obj");
+  const bool is_json = absl::EndsWithIgnoreCase(path, ".json");
+  const struct {
+    const char* name;
+    bool is_given;
+    bool has_meaning;
+    const char* of;
+  } kOptions[] = {
+      {"--skeleton", !options.skeleton_path.empty(), is_obj || is_json,
+       "an .obj or .json file"},
+      {"--vertices", options.vertex_count.has_value(), IsShape(path),
+       "a bundled shape"},
+      {"--unit", options.unit_m.has_value(), is_gltf || is_obj,
+       "a .glb, .gltf or .obj file"},
+      {"--skin", options.skin.has_value(), is_gltf, "a .glb or .gltf file"},
+      {"--mesh", options.mesh.has_value(), is_gltf, "a .glb or .gltf file"},
+      {"--method", options.method != SkinMethod::kLayered, is_gltf,
+       "a .glb or .gltf file, which has weights"},
+  };
+  for (const auto& option : kOptions) {
+    if (!option.is_given || option.has_meaning) continue;
+    return absl::InvalidArgumentError(absl::StrCat(
+        option.name, ": is of ", option.of, ", not of \"", path, "\""));
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<SkinSource> ReadSkinSource(const SkinSourceOptions& options) {
   absl::StatusOr<SkinSource> source = ReadAny(options);
   if (!source.ok()) return source;
-  if (options.method != SkinMethod::kLayered &&
-      source->skin.deformer_case() == v1::Skin::DEFORMER_NOT_SET) {
-    return Refused(options.path, "--method: has no weights, glTF files do");
-  }
   source->skin.set_display_name(BaseName(options.path));
   return source;
 }

@@ -20,7 +20,7 @@ struct SkinSourceOptions {
   // Of an OBJ or JSON file: where its skeleton is. A glTF file has its own.
   std::string skeleton_path;
   // Of a shape; 0 means the service's default.
-  int vertex_count = 0;
+  std::optional<int> vertex_count;
   // Of a glTF or OBJ file, m.
   std::optional<double> unit_m;
   // Of a glTF file: names of its skin, and of its mesh.
@@ -37,6 +37,10 @@ struct SkinSource {
   std::optional<v1::Skeleton> skeleton;
   std::vector<std::string> warnings;
 };
+
+// INVALID_ARGUMENT naming an option that says nothing of such a source;
+// `path` may also be skins/NAME, of which none does.
+absl::Status CheckSourceOptions(const SkinSourceOptions& options);
 
 // Errors name the file and the place in it.
 absl::StatusOr<SkinSource> ReadSkinSource(const SkinSourceOptions& options);
