@@ -19,12 +19,6 @@
 namespace gelenk::server {
 namespace {
 
-// A pose whose numbers (m, rad, quaternions) change by no more a second stands
-// still.
-constexpr double kStillSpeed = 1e-3;
-// What follows a source that stands still, feet that settle say, gets so long.
-constexpr absl::Duration kSettling = absl::Seconds(1);
-
 absl::Status CheckAttach(const v1::AttachSession& request) {
   Violations violations;
   violations.AddStatus(
@@ -181,6 +175,8 @@ absl::StatusOr<std::unique_ptr<StreamSlot>> StreamSlot::Attach(
     if (absl::Status status = Resume(**session, driver, *point); !status.ok()) {
       return status;
     }
+    // The source may have fallen silent meanwhile.
+    slot->schedule_.Begin(now);
   }
   event->set_kind(v1::StreamEvent::KIND_ATTACHED);
   event->set_slot(request.slot());
@@ -205,7 +201,7 @@ StreamSlot::StreamSlot(const ServiceState& state,
       include_joint_frames_(request.include_joint_frames()),
       report_interval_(std::max(1, request.report_interval())),
       continuation_interval_(std::max(1, request.continuation_interval())),
-      fill_interval_(FillIntervalOf(session_->input())) {}
+      schedule_(FillIntervalOf(session_->input())) {}
 
 StreamSlot::~StreamSlot() { session_->Release(driver_); }
 
@@ -233,13 +229,13 @@ absl::Status StreamSlot::Take(const v1::TargetFrame& frame, absl::Time now) {
   }
   if (absl::Status status = session_->Apply(driver_, input_, now);
       !status.ok()) {
-    if (absl::IsOutOfRange(status)) ++out_of_order_count_;
+    if (absl::IsOutOfRange(status)) {
+      ++out_of_order_count_;
+      schedule_.PutOff(now);
+    }
     return status;
   }
-  if (fills()) {
-    fill_time_ = now + fill_interval_;
-    moving_until_ = now + kSettling;
-  }
+  schedule_.Begin(now);
   ++taken_;
   sequence_number_ = frame.sequence_number();
   has_capture_time_ = frame.has_capture_time();
@@ -257,38 +253,27 @@ void StreamSlot::NoteAge(absl::Duration capture_time, absl::Time arrival) {
   age_s_ = std::max(0.0, arrival_s - capture_s - *clock_offset_.offset_s());
 }
 
-absl::Duration StreamSlot::CaptureTimeAt(absl::Time now) const {
-  const double now_s = absl::ToDoubleSeconds(now - absl::UnixEpoch());
-  // Never back, should the clocks drift apart.
-  return std::max(absl::Seconds(now_s - clock_offset_.offset_s().value_or(0)),
-                  convert::FromProto(capture_time_) + absl::Microseconds(1));
-}
-
 absl::Status StreamSlot::Fill(IkSolver& solver, absl::Time now,
                               v1::PoseFrame* answer) {
-  fill_time_.reset();
-  const absl::Duration capture_time = CaptureTimeAt(now);
+  schedule_.Stop();
   input_.Clear();
   input_.is_fill = true;
-  input_.capture_time = capture_time;
   if (absl::Status status = session_->Apply(driver_, input_, now);
       !status.ok()) {
     return status;
   }
-  convert::ToProto(capture_time, &capture_time_);
+  sequence_number_ = session_->sequence_number();
+  has_capture_time_ = true;
+  convert::ToProto(*input_.capture_time, &capture_time_);
   age_s_ = 0;
   session_->CopyPositions(positions_before_);
   if (absl::Status status = Solve(solver, now, answer); !status.ok()) {
     return status;
   }
   answer->mutable_timing()->set_filled(true);
-  if (!solved_.live->is_settled) moving_until_ = now + kSettling;
-  const double change =
-      (solved_.positions - positions_before_).lpNorm<Eigen::Infinity>();
-  const bool is_still =
-      solved_.live->is_settled &&
-      change <= kStillSpeed * absl::ToDoubleSeconds(fill_interval_);
-  if (!is_still && now < moving_until_) fill_time_ = now + fill_interval_;
+  schedule_.Note(
+      now, solved_.live->is_settled,
+      (solved_.positions - positions_before_).lpNorm<Eigen::Infinity>());
   return absl::OkStatus();
 }
 

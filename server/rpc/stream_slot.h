@@ -16,13 +16,10 @@
 #include "gelenk/motion/live_clock.h"
 #include "gelenk/v1/session_service.pb.h"
 #include "server/rpc/service_state.h"
+#include "server/session/fill_schedule.h"
 #include "server/session/session.h"
 
 namespace gelenk::server {
-
-// The fastest way of a frame is looked for among those of this time; clocks
-// drift by less than a millisecond in it.
-inline constexpr double kClockWindow_s = 10;
 
 class StreamSlot {
  public:
@@ -47,9 +44,9 @@ class StreamSlot {
   absl::Status Take(const v1::TargetFrame& frame, absl::Time now);
 
   // When to Fill, if no frame comes until then; never, where the session does
-  // not want it or has come to rest.
-  std::optional<absl::Time> fill_time() const { return fill_time_; }
-  bool fills() const { return fill_interval_ > absl::ZeroDuration(); }
+  // not want it or nothing changes any more.
+  std::optional<absl::Time> fill_time() const { return schedule_.next(); }
+  bool fills() const { return schedule_.is_on(); }
   // Answers for a frame that did not come. An error: there is no answer, and
   // there will be none before the next frame.
   absl::Status Fill(IkSolver& solver, absl::Time now, v1::PoseFrame* answer);
@@ -72,8 +69,6 @@ class StreamSlot {
  private:
   StreamSlot(const ServiceState& state, std::shared_ptr<Session> session,
              DriverId driver, const v1::AttachSession& request);
-  // What stands for a frame at `now` by the source's clock.
-  absl::Duration CaptureTimeAt(absl::Time now) const;
   // By how much the newest frame came later than the fastest of late.
   void NoteAge(absl::Duration capture_time, absl::Time arrival);
   // Solves for what was taken, or for nothing new.
@@ -91,8 +86,6 @@ class StreamSlot {
   const bool include_joint_frames_;
   const int report_interval_;
   const int continuation_interval_;
-  // Zero: never.
-  const absl::Duration fill_interval_;
 
   InputFrame input_;
   SolvedFrame solved_;
@@ -108,9 +101,7 @@ class StreamSlot {
   int64_t newest_number_ = 0;
   int64_t out_of_order_count_ = 0;
   int64_t answered_ = 0;
-  std::optional<absl::Time> fill_time_;
-  // Fills end then, at the latest.
-  absl::Time moving_until_;
+  FillSchedule schedule_;
   Eigen::VectorXd positions_before_;
 };
 

@@ -1,7 +1,6 @@
 #include "server/rpc/streaming_solve_call.h"
 
 #include <chrono>
-#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -13,11 +12,6 @@ namespace gelenk::server {
 namespace {
 
 constexpr int kWholeStream = -1;
-// Answers leave in messages of at most about this many bytes: well below the
-// 4 MB that a client takes by default.
-constexpr size_t kMaxAnswerBytes = 1 << 20;
-// A stream that solves longer than this gives way to the others.
-constexpr absl::Duration kBurst = absl::Milliseconds(2);
 // How long a client has to half-close once it was told that the stream closes.
 constexpr absl::Duration kClosingGrace = absl::Seconds(1);
 
@@ -103,7 +97,6 @@ void StreamingSolveCall::OnWritten(bool ok) {
 
 void StreamingSolveCall::OnWorked(bool) {
   working_ = false;
-  fills_are_due_ = fills_;
   if (message_waits_) {
     message_waits_ = false;
     TakeMessage();
@@ -112,13 +105,11 @@ void StreamingSolveCall::OnWorked(bool) {
 }
 
 void StreamingSolveCall::OnFillTime(bool) {
-  fill_alarm_is_set_ = false;
+  fill_alarm_.SetRung();
   if (finished_call_) {
     DeleteIfDone();
     return;
   }
-  // A worker looks after them when it is done.
-  if (working_) return;
   fills_are_due_ = true;
   Advance();
 }
@@ -130,7 +121,7 @@ void StreamingSolveCall::OnFinished(bool) {
 
 void StreamingSolveCall::DeleteIfDone() {
   // A read or an alarm that is still under way comes back first.
-  if (!reading_ && !fill_alarm_is_set_) delete this;
+  if (!reading_ && !fill_alarm_.is_set()) delete this;
 }
 
 void StreamingSolveCall::Advance() {
@@ -140,22 +131,24 @@ void StreamingSolveCall::Advance() {
     ConsumeOnWorker();
     return;
   }
-  if (fills_are_due_ && !FillSlots(thread_->solver(), false)) {
+  if (fills_are_due_ && IsListening() && !FillSlots(thread_->solver(), false)) {
     ConsumeOnWorker();
     return;
   }
+  fills_are_due_ = false;
   if (!writing_ && !broken_) {
     if (!AnswerMerged(thread_->solver(), false)) {
       ConsumeOnWorker();
       return;
     }
+    FlushFills();
     const v1::StreamingSolveResponse& response = *responses_[filling_].get();
     if (response.frames_size() > 0 || response.events_size() > 0) {
       StartWrite();
     }
   }
   if (!has_message_ && !reading_ && !half_closed_ && !IsFull()) StartRead();
-  if (fills_ && !fill_alarm_is_set_) SetFillAlarm();
+  if (fills_) SetFillAlarm();
   if ((half_closed_ || broken_) && !has_message_ && !writing_ && !reading_) {
     Finish();
   }
@@ -163,7 +156,7 @@ void StreamingSolveCall::Advance() {
 
 void StreamingSolveCall::Finish() {
   finishing_ = true;
-  if (fill_alarm_is_set_) fill_alarm_.Cancel();
+  fill_alarm_.Cancel();
   stream_.Finish(ToGrpc(close_status_), finished_.tag());
 }
 
@@ -215,6 +208,7 @@ bool StreamingSolveCall::ConsumeFrame(const v1::TargetFrame& frame,
   }
   // What came before it is answered before it.
   if (slot.has_unanswered()) AnswerSlot(frame.slot(), slot, solver);
+  FlushFill(frame.slot());
   slot.Refuse(frame, status, AddAnswer(slot.answer_bytes()));
   return true;
 }
@@ -244,56 +238,15 @@ bool StreamingSolveCall::AnswerLast(int index, IkSolver& solver,
   return true;
 }
 
-bool StreamingSolveCall::FillSlots(IkSolver& solver, bool heavy_allowed) {
-  const absl::Time now = Now();
-  for (const auto& [index, slot] : slots_) {
-    const std::optional<absl::Time> time = slot->fill_time();
-    if (!time || *time > now || half_closed_ || broken_) continue;
-    // Frames that are there come first.
-    if (slot->has_unanswered()) continue;
-    if (!heavy_allowed && slot->IsHeavy()) return false;
-    v1::PoseFrame* answer = AddFill(index, slot->answer_bytes());
-    if (!slot->Fill(solver, now, answer).ok()) {
-      // Whoever took over, or ended the session, is told of at the next tick.
-      responses_[filling_].get()->mutable_frames()->RemoveLast();
-    }
-  }
-  fills_are_due_ = false;
-  return true;
-}
-
-v1::PoseFrame* StreamingSolveCall::AddFill(int slot, size_t bytes) {
-  auto* frames = responses_[filling_].get()->mutable_frames();
-  for (int i = frames->size() - 1; i >= 0; --i) {
-    if (frames->Get(i).slot() != slot) continue;
-    if (!frames->Get(i).timing().filled()) break;
-    frames->DeleteSubrange(i, 1);
-    filled_bytes_ -= bytes;
-    break;
-  }
-  return AddAnswer(bytes);
-}
-
-void StreamingSolveCall::SetFillAlarm() {
-  if (half_closed_ || broken_ || finishing_) return;
-  std::optional<absl::Time> next;
-  for (const auto& [index, slot] : slots_) {
-    const std::optional<absl::Time> time = slot->fill_time();
-    if (time && (!next || *time < *next)) next = time;
-  }
-  if (!next) return;
-  fill_alarm_is_set_ = true;
-  fill_alarm_.Set(thread_->queue(), absl::ToChronoTime(*next),
-                  fill_time_.tag());
-}
-
 void StreamingSolveCall::ConsumeOnWorker() {
   working_ = true;
   // Asked now: the next message may come while the worker is at it.
-  const auto work = [this, has_message = has_message_](IkSolver& solver) {
+  const auto work = [this, has_message = has_message_,
+                     fills =
+                         fills_are_due_ && IsListening()](IkSolver& solver) {
     burst_begin_ = Now();
     if (has_message) Consume(solver, true);
-    if (fills_are_due_) FillSlots(solver, true);
+    if (fills) FillSlots(solver, true);
     AnswerMerged(solver, true);
     alarm_.Set(thread_->queue(), std::chrono::system_clock::now(),
                worked_.tag());
@@ -304,6 +257,7 @@ void StreamingSolveCall::ConsumeOnWorker() {
 
 void StreamingSolveCall::AnswerSlot(int index, StreamSlot& slot,
                                     IkSolver& solver) {
+  FlushFill(index);
   v1::PoseFrame* answer = AddAnswer(slot.answer_bytes());
   const absl::Status status = slot.Answer(solver, read_time_, answer);
   if (status.ok()) {
@@ -316,6 +270,7 @@ void StreamingSolveCall::AnswerSlot(int index, StreamSlot& slot,
 }
 
 void StreamingSolveCall::Attach(const v1::AttachSession& request) {
+  FlushFill(request.slot());
   slots_.erase(request.slot());
   const int max_slots = state_->options.limits.max_slots;
   v1::StreamEvent attached;
@@ -343,6 +298,7 @@ void StreamingSolveCall::Detach(int index, const absl::Status& why) {
   const auto found = slots_.find(index);
   const bool known = found != slots_.end();
   const int64_t newest = known ? found->second->session().sequence_number() : 0;
+  FlushFill(index);
   if (known) slots_.erase(found);
   v1::StreamEvent* event = AddEvent(v1::StreamEvent::KIND_DETACHED, index);
   event->set_sequence_number(newest);

@@ -22,6 +22,7 @@
 #include "server/rpc/completion.h"
 #include "server/rpc/io_thread.h"
 #include "server/rpc/message_arena.h"
+#include "server/rpc/restartable_alarm.h"
 #include "server/rpc/service_state.h"
 #include "server/rpc/stream_slot.h"
 
@@ -36,6 +37,12 @@ class StreamingSolveCall final : public Ticking {
   void Tick(absl::Time now) override;
 
  private:
+  // Answers leave in messages of at most about this many bytes: well below the
+  // 4 MB that a client takes by default.
+  static constexpr size_t kMaxAnswerBytes = 1 << 20;
+  // A stream that solves longer than this gives way to the others.
+  static constexpr absl::Duration kBurst = absl::Milliseconds(2);
+
   StreamingSolveCall(v1::SessionService::AsyncService* service,
                      ServiceState* state, IoThread* thread);
   ~StreamingSolveCall() override;
@@ -61,11 +68,19 @@ class StreamingSolveCall final : public Ticking {
   bool AnswerMerged(IkSolver& solver, bool heavy_allowed);
   // The same for one slot that is about to go.
   bool AnswerLast(int slot, IkSolver& solver, bool heavy_allowed);
+  // Whether nothing that was sent waits: then slots may be filled.
+  bool IsListening() const;
   // Answers for frames that did not come, where it is time. False as in
   // Consume.
   bool FillSlots(IkSolver& solver, bool heavy_allowed);
+  void FillSlot(int slot, StreamSlot& stream_slot, IkSolver& solver,
+                absl::Time now);
   // Wakes the stream when the next slot is to be filled.
   void SetFillAlarm();
+  // Puts what was filled into the message, of one slot or as far as there is
+  // room.
+  void FlushFill(int slot);
+  void FlushFills();
   void ConsumeOnWorker();
 
   void Attach(const v1::AttachSession& request);
@@ -73,8 +88,6 @@ class StreamingSolveCall final : public Ticking {
   void AnswerSlot(int slot, StreamSlot& stream_slot, IkSolver& solver);
   v1::StreamEvent* AddEvent(v1::StreamEvent::Kind kind, int slot);
   v1::PoseFrame* AddAnswer(size_t bytes);
-  // The same for a fill: a slow reader misses those before it.
-  v1::PoseFrame* AddFill(int slot, size_t bytes);
 
   bool IsFull() const;
   void CheckSlots();
@@ -101,7 +114,7 @@ class StreamingSolveCall final : public Ticking {
   Operation<StreamingSolveCall> finished_{this,
                                           &StreamingSolveCall::OnFinished};
   grpc::Alarm alarm_;
-  grpc::Alarm fill_alarm_;
+  RestartableAlarm fill_alarm_;
   std::unique_ptr<LimitedPlace> place_;
 
   std::map<int, std::unique_ptr<StreamSlot>> slots_;
@@ -110,6 +123,9 @@ class StreamingSolveCall final : public Ticking {
   MessageArena<v1::StreamingSolveResponse> responses_[2];
   int filling_ = 0;
   size_t filled_bytes_ = 0;
+  // The newest fill of each slot that has not left: a slow reader misses those
+  // before it.
+  std::map<int, v1::PoseFrame> unsent_fills_;
 
   // Where Consume stands in request_.
   bool has_message_ = false;
@@ -120,6 +136,8 @@ class StreamingSolveCall final : public Ticking {
   bool message_waits_ = false;
   // Slot that AnswerMerged answered last.
   int last_merged_ = -1;
+  // The same for FillSlots.
+  int last_filled_ = -1;
   absl::Time read_time_;
   absl::Time burst_begin_;
 
@@ -127,7 +145,6 @@ class StreamingSolveCall final : public Ticking {
   bool reading_ = false;
   bool writing_ = false;
   bool working_ = false;
-  bool fill_alarm_is_set_ = false;
   // Some slot was attached that wants it.
   bool fills_ = false;
   bool fills_are_due_ = false;

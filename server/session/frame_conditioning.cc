@@ -1,5 +1,6 @@
 #include "server/session/frame_conditioning.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/memory/memory.h"
@@ -9,6 +10,10 @@
 
 namespace gelenk::server {
 namespace {
+
+// Moments that follow on one another are so far apart, and whole multiples of
+// it, which messages carry exactly.
+constexpr absl::Duration kTimeStep = absl::Microseconds(1);
 
 double SecondsOf(absl::Time time) {
   return absl::ToDoubleSeconds(time - absl::UnixEpoch());
@@ -55,22 +60,51 @@ bool FrameConditioning::IsMissing(const InputFrame& frame) const {
   return true;
 }
 
+absl::Duration FrameConditioning::TimeOf(absl::Time arrival,
+                                         double offset_s) const {
+  const absl::Duration time =
+      absl::Floor(absl::Seconds(SecondsOf(arrival) - offset_s), kTimeStep);
+  return motion_time_ ? std::max(time, *motion_time_ + kTimeStep) : time;
+}
+
+void FrameConditioning::SetTimes(absl::Time arrival, InputFrame& frame) const {
+  const std::optional<double> offset_s = clock_offset_.offset_s();
+  if (frame.is_fill) {
+    // Just resumed: the clocks of another server tell nothing, so that the
+    // motion goes on by its own time.
+    if (offset_s) {
+      frame.capture_time = TimeOf(arrival, *offset_s);
+    } else if (motion_time_) {
+      frame.capture_time =
+          *motion_time_ + absl::Seconds(options_.fill_interval_s);
+    }
+  }
+  frame.motion_time = frame.capture_time;
+  if (frame.is_fill || !frame.capture_time) return;
+  if (!fills() || options_.jitter_frames == 0) return;
+  const double least_s =
+      SecondsOf(arrival) - absl::ToDoubleSeconds(*frame.capture_time);
+  frame.motion_time =
+      TimeOf(arrival, std::min(least_s, offset_s.value_or(least_s)));
+}
+
 absl::Status FrameConditioning::CheckInTime(const InputFrame& frame) const {
-  if (!filled_until_ || !frame.capture_time ||
-      *frame.capture_time > *filled_until_) {
+  if (!shown_until_ || !frame.capture_time || frame.is_fill ||
+      *frame.capture_time > *shown_until_) {
     return absl::OkStatus();
   }
   return absl::OutOfRangeError(
       absl::StrCat("capture_time: ", absl::FormatDuration(*frame.capture_time),
-                   " is late: the session was filled up to ",
-                   absl::FormatDuration(*filled_until_)));
+                   " is late: the motion was shown up to ",
+                   absl::FormatDuration(*shown_until_), " without it"));
 }
 
 absl::Status FrameConditioning::CheckFrame(const InputFrame& frame) const {
   Violations violations;
   if (!frame.capture_time) {
     violations.Add("capture_time", "is needed for the session's conditioning");
-  } else if (capture_time_ && *frame.capture_time <= *capture_time_) {
+  } else if (!frame.is_fill && capture_time_ &&
+             *frame.capture_time <= *capture_time_) {
     violations.Add(
         "capture_time",
         absl::StrCat("want after ", absl::FormatDuration(*capture_time_),
@@ -84,9 +118,15 @@ absl::Status FrameConditioning::CheckFrame(const InputFrame& frame) const {
 }
 
 void FrameConditioning::Take(const InputFrame& frame, absl::Time arrival) {
-  capture_time_ = frame.capture_time;
-  if (frame.is_fill) filled_until_ = capture_time_;
+  motion_time_ = frame.motion_time;
   arrival_ = arrival;
+  if (frame.is_fill) {
+    shown_until_ = *motion_time_ - absl::Seconds(options_.delay_s());
+    return;
+  }
+  capture_time_ = frame.capture_time;
+  const double capture_s = absl::ToDoubleSeconds(*capture_time_);
+  if (fills()) clock_offset_.Note(capture_s, SecondsOf(arrival));
   if (IsMissing(frame)) return;
   if (is_of_targets()) {
     for (const GoalUpdate& update : frame.updates) {
@@ -95,12 +135,11 @@ void FrameConditioning::Take(const InputFrame& frame, absl::Time arrival) {
   } else {
     newest_ = frame.source_pose;
   }
-  conditioner_.Take(absl::ToDoubleSeconds(*capture_time_), SecondsOf(arrival_),
-                    newest_);
+  conditioner_.Take(capture_s, SecondsOf(arrival_), newest_);
 }
 
 absl::Status FrameConditioning::Sample() {
-  status_ = conditioner_.Sample(absl::ToDoubleSeconds(*capture_time_),
+  status_ = conditioner_.Sample(absl::ToDoubleSeconds(*motion_time_),
                                 SecondsOf(arrival_), used_);
   if (status_.state != LiveStatus::State::kEmpty) return absl::OkStatus();
   return absl::DeadlineExceededError(
@@ -133,16 +172,23 @@ void FrameConditioning::SetGoals(absl::Span<const Goal> goals) {
 
 void FrameConditioning::Reset() {
   conditioner_.Reset();
+  ForgetTimes();
+}
+
+void FrameConditioning::ForgetTimes() {
   capture_time_.reset();
-  filled_until_.reset();
+  motion_time_.reset();
+  shown_until_.reset();
+  clock_offset_ = ClockOffset(kClockWindow_s);
 }
 
 void FrameConditioning::Exchange(StateNumbers& state) {
-  if (state.is_reading()) {
-    capture_time_.reset();
-    filled_until_.reset();
-  }
+  if (state.is_reading()) ForgetTimes();
   conditioner_.Exchange(state);
+  if (fills()) {
+    state.Time(motion_time_);
+    state.Time(shown_until_);
+  }
   if (!is_of_targets()) return;
   state.Numbers(newest_);
   if (!state.is_reading() || !state.ok()) return;

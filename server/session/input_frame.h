@@ -32,15 +32,19 @@ struct InputFrame {
       patch;
   std::vector<GoalUpdate> updates;
   std::optional<RigidTransform> world_from_skeleton;
-  // On the client's clock; bounds the joints' speed where the session wants it,
-  // and is the time of a source's motion.
+  // On the client's clock.
   std::optional<absl::Duration> capture_time;
   // Of the body that the session follows; kept for its memory when there is
   // none.
   bool has_source_pose = false;
   Eigen::VectorXd source_pose;
-  // Nobody sent it: it asks what stands for a frame that did not come.
+  // Nobody sent it: it asks what stands for a frame that did not come. The
+  // session says what its capture time is.
   bool is_fill = false;
+  // Set by the session: bounds the joints' speed where it wants that, and is
+  // the time of a source's motion. The capture time, unless frames are timed by
+  // their arrivals.
+  std::optional<absl::Duration> motion_time;
 
   void Clear() {
     sequence_number.reset();
@@ -50,6 +54,7 @@ struct InputFrame {
     capture_time.reset();
     has_source_pose = false;
     is_fill = false;
+    motion_time.reset();
   }
 };
 

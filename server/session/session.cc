@@ -118,10 +118,12 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
                             absl::Time now) {
   std::lock_guard<std::mutex> lock(mutex_);
   if (absl::Status status =
-          TakeNumberLocked(driver, frame.sequence_number, now);
+          frame.is_fill ? seat_.Check(driver, name_)
+                        : TakeNumberLocked(driver, frame.sequence_number, now);
       !status.ok()) {
     return status;
   }
+  input_.SetTimes(now, frame);
 
   std::optional<IkProblem> patched;
   if (frame.patch) {
@@ -147,7 +149,7 @@ absl::Status Session::Apply(DriverId driver, InputFrame& frame,
   }
 
   // Nothing can fail from here on.
-  capture_time_ = frame.capture_time;
+  motion_time_ = frame.motion_time;
   if (patched) {
     problem_ = *std::move(patched);
     drifted_ = true;
@@ -222,7 +224,7 @@ absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
   frame.needs_continuation =
       drifted_ || partly_named_ || options_.limit_speed || !input_.empty();
   if (options_.limit_speed) {
-    NoteMotion(skeleton(), capture_time_, frame.start, positions_, motion_);
+    NoteMotion(skeleton(), motion_time_, frame.start, positions_, motion_);
   }
   RecordLocked(frame);
   return absl::OkStatus();
@@ -230,7 +232,7 @@ absl::Status Session::Solve(DriverId driver, IkSolver& solver, bool whole,
 
 void Session::RecordLocked(const SolvedFrame& frame) {
   if (!recording_) return;
-  recording_->Note(capture_time_, frame.end_time, positions_);
+  recording_->Note(motion_time_, frame.end_time, positions_);
 }
 
 void Session::FollowSourceLocked(SolvedFrame& frame) {
@@ -251,7 +253,7 @@ const StepBounds* Session::SpeedBoundsLocked(SolvedFrame& frame) const {
   frame.start = positions_;
   if (cold_) return nullptr;
   const bool bounded =
-      BoundSpeed(skeleton(), motion_, capture_time_, frame.bounds);
+      BoundSpeed(skeleton(), motion_, motion_time_, frame.bounds);
   return bounded ? &frame.bounds : nullptr;
 }
 

@@ -120,7 +120,10 @@ class Session {
   absl::Status Resume(DriverId driver, const ResumeState& state);
 
   // Takes a frame's targets, without solving. A frame with any fault changes
-  // nothing but uses up its sequence number. Allocates nothing without a patch.
+  // nothing but uses up its sequence number. One that nobody sent uses up none
+  // and does not make the session live longer; its capture time is filled in.
+  // OUT_OF_RANGE: captured before what was shown in its place; see
+  // FrameConditioning. Allocates nothing without a patch.
   absl::Status Apply(DriverId driver, InputFrame& frame, absl::Time now);
 
   // Uses up the sequence number of a frame with a fault.
@@ -207,7 +210,7 @@ class Session {
   uint64_t version_ ABSL_GUARDED_BY(mutex_) = 0;
   int64_t revision_ ABSL_GUARDED_BY(mutex_) = 1;
   // Of the newest frame; and what the last solved one left.
-  std::optional<absl::Duration> capture_time_ ABSL_GUARDED_BY(mutex_);
+  std::optional<absl::Duration> motion_time_ ABSL_GUARDED_BY(mutex_);
   JointMotion motion_ ABSL_GUARDED_BY(mutex_);
   // Weights, goals or place were changed by frames.
   bool drifted_ ABSL_GUARDED_BY(mutex_) = false;

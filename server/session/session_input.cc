@@ -12,6 +12,14 @@ void SessionInput::SetGoals(absl::Span<const Goal> goals) {
   if (ConditionsTargets()) conditioning->SetGoals(goals);
 }
 
+void SessionInput::SetTimes(absl::Time arrival, InputFrame& frame) const {
+  if (conditioning != nullptr) {
+    conditioning->SetTimes(arrival, frame);
+  } else {
+    frame.motion_time = frame.capture_time;
+  }
+}
+
 absl::Status SessionInput::CheckFrame(const IkProblem& problem,
                                       InputFrame& frame) const {
   if (source == nullptr && frame.has_source_pose) {

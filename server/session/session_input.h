@@ -40,6 +40,9 @@ struct SessionInput {
   // It has them now: targets begin anew.
   void SetGoals(absl::Span<const Goal> goals);
 
+  // Tells `frame`, which came at `arrival`, when in the motion it is.
+  void SetTimes(absl::Time arrival, InputFrame& frame) const;
+
   // Whether `frame` brings what is wanted; `problem` is as it will be but for
   // the targets and weights in the frame.
   absl::Status CheckFrame(const IkProblem& problem, InputFrame& frame) const;

@@ -40,7 +40,7 @@ absl::Status SourceMotion::CheckFrame(const IkProblem& problem,
                                       bool may_be_missing,
                                       InputFrame& frame) const {
   Violations violations;
-  violations.AddStatus("", retargeter_->CheckTime(frame.capture_time));
+  violations.AddStatus("", retargeter_->CheckTime(frame.motion_time));
   if (retargeter_->takes_trackers()) {
     if (frame.has_source_pose) {
       violations.Add("source_pose", "want trackers, got a pose");
@@ -59,7 +59,7 @@ absl::Status SourceMotion::CheckFrame(const IkProblem& problem,
 }
 
 void SourceMotion::Take(const InputFrame& frame) {
-  retargeter_->NoteFrame(frame.capture_time);
+  retargeter_->NoteFrame(frame.motion_time);
   if (frame.has_source_pose) pose_ = frame.source_pose;
 }
 

@@ -8,6 +8,24 @@
 
 namespace gelenk {
 
+void StateNumbers::Time(std::optional<absl::Duration>& value) {
+  bool is_known = value.has_value();
+  Flag(is_known);
+  if (!is_known) {
+    value.reset();
+    return;
+  }
+  absl::Duration rest = value.value_or(absl::ZeroDuration());
+  auto seconds =
+      static_cast<double>(absl::IDivDuration(rest, absl::Seconds(1), &rest));
+  double nanos = absl::ToDoubleNanoseconds(rest);
+  Number(seconds);
+  Number(nanos);
+  if (!is_reading() || !ok()) return;
+  value = absl::Seconds(static_cast<int64_t>(seconds)) +
+          absl::Nanoseconds(static_cast<int64_t>(nanos));
+}
+
 void StateNumbers::Refuse(absl::string_view why) {
   if (!status_.ok()) return;
   status_ = absl::InvalidArgumentError(

@@ -15,9 +15,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/time/time.h"
 #include "absl/types/span.h"
 #include "gelenk/math/rigid_transform.h"
 
@@ -55,6 +57,8 @@ class StateNumbers {
   // Near unit, taken as it is.
   void Rotation(Eigen::Quaterniond& value);
   void Place(RigidTransform& value);
+  // Exact to the nanosecond, which is what messages carry.
+  void Time(std::optional<absl::Duration>& value);
 
   // What was read so far is no state of this object.
   void Refuse(absl::string_view why);

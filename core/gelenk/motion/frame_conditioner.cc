@@ -40,7 +40,7 @@ absl::StatusOr<FrameConditioner> FrameConditioner::Create(
     const ConditioningOptions& options, const Eigen::VectorXd& rest) {
   if (absl::Status status = CheckTimes(options); !status.ok()) return status;
   LiveClockOptions clock_options;
-  clock_options.delay_s = options.jitter_frames * options.frame_interval_s;
+  clock_options.delay_s = options.delay_s();
   clock_options.late_policy = options.late_policy;
   clock_options.max_extrapolation_s = options.max_extrapolation_s;
   clock_options.ease_s = options.ease_s;
@@ -85,8 +85,7 @@ LiveStatus FrameConditioner::Sample(double capture_s, double arrival_s,
 }
 
 double FrameConditioner::latency_s() const {
-  return options_.jitter_frames * options_.frame_interval_s +
-         smoother_.latency_s();
+  return options_.delay_s() + smoother_.latency_s();
 }
 
 void FrameConditioner::Reset() {

@@ -37,11 +37,19 @@ struct ConditioningOptions {
   // Whoever calls Take and Sample asks by himself when no frame came for so
   // long; 0: never.
   double fill_interval_s = 0;
+
+  // How far behind the fastest frame what is used lies.
+  double delay_s() const { return jitter_frames * frame_interval_s; }
 };
+
+// The fastest way of a frame is looked for among those of this time; clocks
+// drift by less than a millisecond in it.
+inline constexpr double kClockWindow_s = 10;
 
 // More is no live stream.
 inline constexpr int kMaxJitterFrames = 32;
-// No screen is faster, and nobody looks at one that is slower.
+// No screen is faster, and a stream that waits wakes no more often; a viewer who
+// waits longer takes the actor for gone.
 inline constexpr double kMinFillInterval_s = 0.002;
 inline constexpr double kMaxFillInterval_s = 10;
 

@@ -23,25 +23,6 @@ void CheckRange(absl::string_view field, double value, double most,
                                         most, value));
 }
 
-// Exact to the nanosecond, which is what messages carry.
-void ExchangeTime(std::optional<absl::Duration>& time, StateNumbers& state) {
-  bool is_known = time.has_value();
-  state.Flag(is_known);
-  if (!is_known) {
-    time.reset();
-    return;
-  }
-  absl::Duration rest = time.value_or(absl::ZeroDuration());
-  auto seconds =
-      static_cast<double>(absl::IDivDuration(rest, absl::Seconds(1), &rest));
-  double nanos = absl::ToDoubleNanoseconds(rest);
-  state.Number(seconds);
-  state.Number(nanos);
-  if (!state.is_reading() || !state.ok()) return;
-  time = absl::Seconds(static_cast<int64_t>(seconds)) +
-         absl::Nanoseconds(static_cast<int64_t>(nanos));
-}
-
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<LiveRetargeter>> LiveRetargeter::Create(
@@ -133,7 +114,7 @@ void LiveRetargeter::Reset() {
 }
 
 void LiveRetargeter::Exchange(StateNumbers& state) {
-  ExchangeTime(stepped_, state);
+  state.Time(stepped_);
   retargeter_->Exchange(state);
   if (trackers_ != nullptr) trackers_->Exchange(state);
   if (!state.is_reading()) return;
