@@ -17,6 +17,7 @@
 #include "client/cli/service.h"
 #include "client/cli/vmc/udp_socket.h"
 #include "client/cli/vmc/vmc_bridge.h"
+#include "gelenk/motion/frame_conditioner.h"
 #include "gelenk/retarget/tracker_goals.h"
 
 namespace gelenk::cli {
@@ -31,6 +32,7 @@ struct BridgeOptions {
   std::vector<std::string> trackers;
   double height_m = kHumanoidHeightM;
   bool begins_in_t_pose = false;
+  std::optional<double> fill_s;
   std::optional<double> seconds;
   Format format = Format::kTable;
 };
@@ -107,8 +109,10 @@ absl::Status RunVmc(const BridgeOptions& options, const std::string& server,
       Service::Open(server);
   if (!service.ok()) return service.status();
   std::fprintf(stderr, "gelenk: VMC at port %d\n", (*in)->port());
+  std::optional<absl::Duration> fill_interval;
+  if (options.fill_s) fill_interval = absl::Seconds(*options.fill_s);
   VmcBridge bridge((*service)->connection(), *std::move(target), *std::move(in),
-                   *std::move(out), *std::move(trackers));
+                   *std::move(out), *std::move(trackers), fill_interval);
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
   const absl::Time deadline =
@@ -162,6 +166,11 @@ Command AddBridgeCommand(CLI::App& app) {
   vmc->add_flag("--t-pose", options->begins_in_t_pose,
                 "The first frame of the trackers shows a T-pose at the origin, "
                 "facing forward: tells how they are worn");
+  vmc->add_option("--fill", options->fill_s,
+                  "When no motion came for so long, it goes on and eases to "
+                  "rest, a frame each S; 0.002 to 10; default: it stops")
+      ->check(CLI::Range(kMinFillInterval_s, kMaxFillInterval_s))
+      ->option_text("S");
   vmc->add_option("--seconds", options->seconds,
                   "End after so long; default: when interrupted")
       ->check(Positive())

@@ -39,6 +39,10 @@ client::SessionSpec SpecOf(const SessionLog& log) {
     session->mutable_retargeting()->clear_source_skeleton();
   }
   spec.frame_policy = v1::FRAME_POLICY_EVERY_FRAME;
+  // Frames come at a pace of their own.
+  if (session->has_conditioning()) {
+    session->mutable_conditioning()->clear_fill_interval();
+  }
   return spec;
 }
 

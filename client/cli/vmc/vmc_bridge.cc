@@ -24,12 +24,14 @@ constexpr int kMaxPacketsATurn = 256;
 VmcBridge::VmcBridge(std::shared_ptr<client::Connection> connection,
                      BodyFile target, std::unique_ptr<UdpSocket> in,
                      std::unique_ptr<UdpSocket> out,
-                     std::optional<VmcTrackers> trackers)
+                     std::optional<VmcTrackers> trackers,
+                     std::optional<absl::Duration> fill_interval)
     : connection_(std::move(connection)),
       target_(std::move(target)),
       in_(std::move(in)),
       out_(std::move(out)),
       trackers_(std::move(trackers)),
+      fill_interval_(fill_interval),
       start_(absl::Now()),
       writer_(target_.model) {}
 
@@ -62,6 +64,13 @@ bool VmcBridge::ReceiveFrame() {
 
 absl::Status VmcBridge::Open(client::SessionSpec spec) {
   spec.frame_policy = v1::FRAME_POLICY_LATEST_WINS;
+  if (fill_interval_) {
+    v1::StreamConditioning* conditioning =
+        spec.session.mutable_session()->mutable_conditioning();
+    conditioning->set_late_policy(
+        v1::StreamConditioning::LATE_POLICY_EXTRAPOLATE);
+    convert::ToProto(*fill_interval_, conditioning->mutable_fill_interval());
+  }
   auto stream = client::SessionStream::Open(connection_, {}, {spec});
   if (!stream.ok()) return stream.status();
   stream_ = *std::move(stream);

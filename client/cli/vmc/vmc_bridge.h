@@ -5,7 +5,8 @@
 //
 // The session is made of the first frame that shows a body, and made anew when
 // a performer comes whose bones are others. Frames go out as poses come in; of
-// those that come too fast the newest counts.
+// those that come too fast the newest counts. With a fill interval the body
+// comes to rest when none come any more, a frame each interval.
 #ifndef CLIENT_CLI_VMC_VMC_BRIDGE_H_
 #define CLIENT_CLI_VMC_VMC_BRIDGE_H_
 
@@ -51,7 +52,8 @@ class VmcBridge {
  public:
   VmcBridge(std::shared_ptr<client::Connection> connection, BodyFile target,
             std::unique_ptr<UdpSocket> in, std::unique_ptr<UdpSocket> out,
-            std::optional<VmcTrackers> trackers = std::nullopt);
+            std::optional<VmcTrackers> trackers = std::nullopt,
+            std::optional<absl::Duration> fill_interval = std::nullopt);
   // Deletes the session.
   ~VmcBridge();
 
@@ -80,6 +82,7 @@ class VmcBridge {
   const std::unique_ptr<UdpSocket> in_;
   const std::unique_ptr<UdpSocket> out_;
   const std::optional<VmcTrackers> trackers_;
+  const std::optional<absl::Duration> fill_interval_;
   const absl::Time start_;
   VmcReader reader_;
   VmcWriter writer_;

@@ -220,7 +220,8 @@ TEST(VmcWriterTest, APerformerIsReadAsItWasWritten) {
 // A bridge onto the humanoid with a performer and a receiver at its ends.
 class VmcBridgeTest : public ::testing::Test {
  protected:
-  void Start(std::optional<VmcTrackers> trackers = std::nullopt) {
+  void Start(std::optional<VmcTrackers> trackers = std::nullopt,
+             std::optional<absl::Duration> fill_interval = std::nullopt) {
     service_ = *Service::Open("");
     receiver_ = *UdpSocket::Listen("0");
     auto in = *UdpSocket::Listen("0");
@@ -230,7 +231,7 @@ class VmcBridgeTest : public ::testing::Test {
         *UdpSocket::Connect(absl::StrCat("127.0.0.1:", receiver_->port()));
     bridge_ = std::make_unique<VmcBridge>(
         service_->connection(), *ReadBodyFile("humanoid", std::nullopt),
-        std::move(in), std::move(out), std::move(trackers));
+        std::move(in), std::move(out), std::move(trackers), fill_interval);
     thread_ = std::thread([this] {
       status_ = bridge_->Run(absl::Now() + absl::Seconds(60), stop_);
     });
@@ -402,6 +403,27 @@ TEST_F(VmcBridgeTest, TheCommandFollowsTheTrackersThatItIsTold) {
   thread_.join();
   EXPECT_TRUE(status_.ok()) << status_;
   EXPECT_TRUE(came_out) << output;
+}
+
+TEST_F(VmcBridgeTest, ASilentPerformerComesToRest) {
+  const BodyClip clip = Walk(30);
+  VmcWriter writer(clip.model);
+  Start({}, absl::Milliseconds(20));
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    performer_->Send(PacketOf(writer, clip, f));
+  }
+  std::vector<VmcFrame> frames;
+  while (const auto frame = NextFrame()) frames.push_back(*frame);
+  Stop();
+  EXPECT_TRUE(status_.ok()) << status_;
+  EXPECT_EQ(bridge_->counts().refused_frames, 0);
+  ASSERT_GE(frames.size(), 3u);
+  const int leg = FindHumanBone("LeftUpperLeg");
+  const auto turn = [&](const VmcFrame& a, const VmcFrame& b) {
+    return AngleBetween(a.bones[leg]->rotation, b.bones[leg]->rotation);
+  };
+  EXPECT_GT(turn(frames.front(), frames.back()), 0.1);
+  EXPECT_LT(turn(*(frames.end() - 2), frames.back()), 0.02);
 }
 
 TEST(UdpSocketTest, BadAddressesAreNamed) {
