@@ -48,8 +48,8 @@ inline constexpr double kClockWindow_s = 10;
 
 // More is no live stream.
 inline constexpr int kMaxJitterFrames = 32;
-// No screen is faster, and a stream that waits wakes no more often; a viewer who
-// waits longer takes the actor for gone.
+// No screen is faster, and a stream that waits wakes no more often; a viewer
+// who waits longer takes the actor for gone.
 inline constexpr double kMinFillInterval_s = 0.002;
 inline constexpr double kMaxFillInterval_s = 10;
 
