@@ -102,7 +102,8 @@ const std::vector<Room>& House() {
     {"client/",         Includes{kStd, "Eigen/", "absl/", kCore, kGenerated,
                          kClient, kConvert, kGrpc, kHealth,
                          "google/protobuf/", "CLI/", "spdlog/",
-                         "nlohmann/", "zlib.h", "lo/", "client/"} + kPosix, {kInternal}},
+                         "nlohmann/", "sanitizer/", "zlib.h", "lo/",
+                         "client/"} + kPosix, {kInternal}},
 
     // Without --server the CLI hosts the same service in its own process; this
     // is the one file that may know how.

@@ -71,17 +71,21 @@ class BrokenClientsTest : public ServiceTest {
   }
 
   // Calls `round` some times to warm up, then many times; the memory must not
-  // grow by more than `slack_bytes`.
+  // grow by more than `slack_bytes`. What is leaked is leaked every time; what
+  // is on its way to be freed on a busy machine is not.
   template <class Round>
   static void ExpectMemoryKept(int rounds, int64_t slack_bytes, Round round) {
+    constexpr int kAttempts = 5;
+    int64_t grown = 0;
     for (int i = 0; i < rounds; ++i) round();
-    const int64_t before = server().resident_bytes();
-    for (int i = 0; i < rounds; ++i) round();
-    const int64_t grown = server().resident_bytes() - before;
-    std::cout << (grown >> 10) << " KiB grown\n";
-    if (!kSanitized) {
-      EXPECT_LE(grown, slack_bytes);
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const int64_t before = server().resident_bytes();
+      for (int i = 0; i < rounds; ++i) round();
+      grown = server().resident_bytes() - before;
+      std::cout << (grown >> 10) << " KiB grown\n";
+      if (kSanitized || grown <= slack_bytes) return;
     }
+    EXPECT_LE(grown, slack_bytes);
   }
 };
 
