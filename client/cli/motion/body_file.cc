@@ -154,7 +154,8 @@ absl::StatusOr<MapFile> ReadMapFile(const std::string& path) {
   const absl::StatusOr<std::string> bytes = ReadFile(path);
   if (!bytes.ok()) return bytes.status();
   const nlohmann::json json = nlohmann::json::parse(*bytes, nullptr, false);
-  if (!json.is_object()) {
+  if (!json.is_object() ||
+      !(json.contains("source") || json.contains("target"))) {
     return InFile(path, absl::InvalidArgumentError(
                             "want JSON with \"source\" and \"target\""));
   }

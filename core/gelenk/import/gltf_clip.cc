@@ -22,8 +22,10 @@ constexpr double kSinglePrecision = 1e-5;
 constexpr double kShortestFrame = 1.0 / 1000;
 constexpr double kLongestFrame = 1.0 / 10;
 constexpr double kUnevenness = 1e-2;
-// So near to a whole rate the rate is meant.
+// So near to a whole rate the rate is meant, if that moves the last key by less
+// than so much of a frame: 0.0083333 s is 1/120 in a short clip only.
 constexpr double kRateRounding = 1e-5;
+constexpr double kLastKeyRounding = 5e-4;
 
 // The time from key to key of the channel with the most keys, where they are
 // frames; else 0.
@@ -44,7 +46,10 @@ double FrameTimeOfKeys(const GltfAnimation& animation) {
   }
   const double rate = 1 / mean;
   const double whole = std::round(rate);
-  return std::abs(rate - whole) <= kRateRounding * rate ? 1 / whole : mean;
+  const double last = static_cast<double>(times->size() - 1);
+  const bool is_whole = std::abs(rate - whole) <=
+                        std::min(kRateRounding, kLastKeyRounding / last) * rate;
+  return is_whole ? 1 / whole : mean;
 }
 
 // What is above a node, while it rests: scene = linear * local + position.

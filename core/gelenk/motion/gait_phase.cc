@@ -22,18 +22,23 @@ namespace {
 // Who gets this far goes somewhere; less says nothing about the heading, m.
 constexpr double kTravel_m = 0.3;
 
+// Joints of the two legs that are as close at rest are in one place, m.
+constexpr double kSamePlace_m = 1e-6;
+
 struct Legs {
   int left_foot, right_foot;
-  // The topmost joints of each leg alone.
+  // The topmost joints of each leg alone that are apart.
   int left_hip, right_hip;
 };
 
-int TopBelow(const Skeleton& skeleton, int joint, int ancestor) {
-  while (skeleton.span(joint).parent >= 0 &&
-         skeleton.span(joint).parent != ancestor) {
-    joint = skeleton.span(joint).parent;
+// From below `ancestor` down to `joint`.
+std::vector<int> ChainBelow(const Skeleton& skeleton, int joint, int ancestor) {
+  std::vector<int> chain;
+  for (; joint >= 0 && joint != ancestor; joint = skeleton.span(joint).parent) {
+    chain.push_back(joint);
   }
-  return joint;
+  std::reverse(chain.begin(), chain.end());
+  return chain;
 }
 
 absl::StatusOr<Legs> FindLegs(const Skeleton& skeleton) {
@@ -43,9 +48,20 @@ absl::StatusOr<Legs> FindLegs(const Skeleton& skeleton) {
         "skeleton: no left and right foot were found");
   }
   const int pelvis = CommonAncestor(skeleton, body.left_foot, body.right_foot);
-  return Legs{body.left_foot, body.right_foot,
-              TopBelow(skeleton, body.left_foot, pelvis),
-              TopBelow(skeleton, body.right_foot, pelvis)};
+  // Some rigs begin both legs with a joint in the place of the pelvis.
+  const std::vector<int> left = ChainBelow(skeleton, body.left_foot, pelvis);
+  const std::vector<int> right = ChainBelow(skeleton, body.right_foot, pelvis);
+  WorldTransforms frames;
+  ForwardKinematics(skeleton, skeleton.rest_positions(), frames);
+  const size_t last = std::min(left.size(), right.size()) - 1;
+  size_t hip = 0;
+  while (
+      hip < last &&
+      (frames[left[hip]].translation - frames[right[hip]].translation).norm() <=
+          kSamePlace_m) {
+    ++hip;
+  }
+  return Legs{body.left_foot, body.right_foot, left[hip], right[hip]};
 }
 
 Eigen::Vector3d OnGround(const Skeleton& skeleton, const Eigen::Vector3d& v) {

@@ -79,7 +79,6 @@ absl::StatusOr<MovingBody> MakeMovingBody(
   } else {
     body.positions = std::move(frames);
   }
-  body.notes.insert(body.notes.end(), map->notes.begin(), map->notes.end());
   body.notes.insert(body.notes.end(), body.model->notes.begin(),
                     body.model->notes.end());
   return body;

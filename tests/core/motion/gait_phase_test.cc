@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "gelenk/formats/bvh_clip.h"
 #include "gelenk/formats/bvh_reader.h"
@@ -22,9 +23,23 @@ namespace {
 using ::gelenk::testing::Fails;
 using ::gelenk::testing::WalkingBvh;
 
-MotionClip Walk() {
-  const BvhDocument document = ReadBvh(WalkingBvh(200)).value();
+MotionClip Walk(const std::string& bvh = WalkingBvh(200)) {
+  const BvhDocument document = ReadBvh(bvh).value();
   return ClipFromBvh(document, ImportBvh(document).value(), "walk").value();
+}
+
+// `bvh` with a joint that never moves in the place of the parent of `joint`,
+// between the two.
+std::string WithJointOfNoLength(std::string bvh, const std::string& joint) {
+  const size_t begin = bvh.find("JOINT " + joint + "\n");
+  size_t end = bvh.find('{', begin);
+  for (int depth = 1; depth > 0;) {
+    end = bvh.find_first_of("{}", end + 1);
+    depth += bvh[end] == '{' ? 1 : -1;
+  }
+  bvh.insert(end + 1, "\n}");
+  bvh.insert(begin, "JOINT " + joint + "Base\n{\nOFFSET 0 0 0\nCHANNELS 0\n");
+  return bvh;
 }
 
 double MeanStride(const GaitPhase& phase) {
@@ -36,6 +51,14 @@ double MeanStride(const GaitPhase& phase) {
 double MeanStep(const GaitPhase& phase) {
   return (phase.strikes_s.back() - phase.strikes_s.front()) /
          static_cast<double>(phase.strikes_s.size() - 1);
+}
+
+TEST(FindGaitPhaseTest, LegsMayBeginInThePlaceOfThePelvis) {
+  const GaitPhase want = FindGaitPhase(Walk()).value();
+  const auto got = FindGaitPhase(Walk(WithJointOfNoLength(
+      WithJointOfNoLength(WalkingBvh(200), "LeftUpLeg"), "RightUpLeg")));
+  ASSERT_TRUE(got.ok()) << got.status();
+  EXPECT_EQ(got->strikes_s, want.strikes_s);
 }
 
 // The walk twice as fast, half a cycle later, turned and moved aside.
