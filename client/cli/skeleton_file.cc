@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/cli/file_bytes.h"
+#include "client/cli/gltf_path.h"
 #include "convert/skeleton.h"
 #include "gelenk/import/gltf_import.h"
 #include "gelenk/import/gltf_reader.h"
@@ -105,7 +106,7 @@ absl::StatusOr<SkeletonFile> ReadSkeletonFile(
   const auto ends_with = [&path](absl::string_view end) {
     return absl::EndsWithIgnoreCase(path, end);
   };
-  const bool is_gltf = ends_with(".gltf") || ends_with(".glb");
+  const bool is_gltf = IsGltfPath(path);
   if (skin && !is_gltf) {
     return InFile(
         path, absl::InvalidArgumentError("--skin: only glTF files have skins"));
@@ -122,7 +123,8 @@ absl::StatusOr<SkeletonFile> ReadSkeletonFile(
   }
   if (ends_with(".json")) return FromJson(path);
   return absl::InvalidArgumentError(absl::StrCat(
-      "\"", path, "\": want a .bvh, .asf, .urdf, .gltf, .glb or .json file"));
+      "\"", path,
+      "\": want a .bvh, .asf, .urdf, .gltf, .glb, .vrm or .json file"));
 }
 
 }  // namespace gelenk::cli

@@ -418,7 +418,8 @@ TEST_F(CommandLineTest, ClipsAreSmoothedMirroredAndConverted) {
   EXPECT_TRUE(ReadBvh(Read(folder_ / "c.bvh")).ok());
   const Ending robot = Run({"clip", "mirror", "arm.urdf", "--out", "c.bvh"});
   EXPECT_EQ(robot.exit_code, 1);
-  EXPECT_THAT(robot.err, HasSubstr("want a .bvh, .amc, .gltf or .glb file"));
+  EXPECT_THAT(robot.err,
+              HasSubstr("want a .bvh, .amc, .gltf, .glb or .vrm file"));
   const Ending bad = Run({"clip", "convert", "walk.bvh", "--out", "b.fbx"});
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_THAT(bad.err, HasSubstr(".glb"));
@@ -490,6 +491,11 @@ TEST_F(CommandLineTest, AnAnimationMovesOtherBodies) {
                  "--live"})
                 .exit_code,
             0);
+  // An avatar by its own name.
+  fs::copy_file(folder_ / "d.glb", folder_ / "d.vrm");
+  EXPECT_EQ(
+      Run({"retarget", "d.vrm", "--onto", "d.vrm", "--out", "v.bvh"}).exit_code,
+      0);
   const json walk = RunJson({"clip", "measure", "walk.bvh"});
   const json measured = RunJson({"clip", "measure", "d.glb", "--reference",
                                  "walk.bvh", "--animation", name});

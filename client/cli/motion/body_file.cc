@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/cli/file_bytes.h"
+#include "client/cli/gltf_path.h"
 #include "gelenk/motion/clip_frames.h"
 #include "gelenk/retarget/floating_base.h"
 #include "gelenk/retarget/humanoid.h"
@@ -136,8 +137,7 @@ absl::StatusOr<BodyFile> ReadBodyFile(
 absl::StatusOr<BodyFile> ReadMovingBodyFile(
     const std::string& path, const MotionFileOptions& options,
     absl::Span<const JointMapOverride> overrides) {
-  if (absl::EndsWithIgnoreCase(path, ".gltf") ||
-      absl::EndsWithIgnoreCase(path, ".glb")) {
+  if (IsGltfPath(path)) {
     return BodyOf(path, ReadAnimation(path, options), overrides);
   }
   if (!options.animation.empty()) {

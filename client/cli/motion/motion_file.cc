@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/cli/file_bytes.h"
+#include "client/cli/gltf_path.h"
 #include "client/cli/skeleton_file.h"
 #include "gelenk/formats/bvh_clip.h"
 #include "gelenk/import/gltf_animation.h"
@@ -125,14 +126,13 @@ absl::StatusOr<BvhClip> ReadAmcClip(const std::string& path,
 
 absl::StatusOr<MotionFile> ReadMotionFile(const std::string& path,
                                           const MotionFileOptions& options) {
-  if (absl::EndsWithIgnoreCase(path, ".gltf") ||
-      absl::EndsWithIgnoreCase(path, ".glb")) {
+  if (IsGltfPath(path)) {
     return ReadGltfMotion(path, options);
   }
   const bool is_amc = absl::EndsWithIgnoreCase(path, ".amc");
   if (!is_amc && !absl::EndsWithIgnoreCase(path, ".bvh")) {
     return InFile(path, absl::InvalidArgumentError(
-                            "want a .bvh, .amc, .gltf or .glb file"));
+                            "want a .bvh, .amc, .gltf, .glb or .vrm file"));
   }
   if (!options.animation.empty()) {
     return InFile(path, absl::InvalidArgumentError(

@@ -5,6 +5,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/string_view.h"
 #include "client/cli/file_bytes.h"
+#include "client/cli/gltf_path.h"
 #include "client/cli/patient_call.h"
 #include "client/cli/skeleton_file.h"
 #include "client/cli/unique_id.h"
@@ -108,7 +109,8 @@ absl::StatusOr<v1::Clip> ServedClips::Keep(absl::StatusOr<v1::Clip> made) {
 
 absl::StatusOr<v1::Clip> ServedClips::Upload(const std::string& path,
                                              const MotionFileOptions& options) {
-  const absl::StatusOr<v1::ClipFormat> format = ClipFormatOf(path);
+  const absl::StatusOr<v1::ClipFormat> format =
+      IsGlbPath(path) ? v1::CLIP_FORMAT_GLB : ClipFormatOf(path);
   if (!format.ok()) return format.status();
   v1::CreateClipRequest header;
   header.set_clip_id(UniqueId());

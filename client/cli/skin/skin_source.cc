@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/cli/file_bytes.h"
+#include "client/cli/gltf_path.h"
 #include "client/cli/skeleton_file.h"
 #include "convert/skeleton.h"
 #include "convert/skin_surface.h"
@@ -139,7 +140,7 @@ absl::StatusOr<SkinSource> ReadAny(const SkinSourceOptions& options) {
         options.vertex_count.value_or(0));
     return source;
   }
-  if (ends_with(".gltf") || ends_with(".glb")) return FromGltf(options);
+  if (IsGltfPath(options.path)) return FromGltf(options);
   if (ends_with(".obj")) return FromObj(options);
   if (ends_with(".json")) return FromJson(options);
   return absl::InvalidArgumentError(
@@ -152,8 +153,7 @@ absl::StatusOr<SkinSource> ReadAny(const SkinSourceOptions& options) {
 
 absl::Status CheckSourceOptions(const SkinSourceOptions& options) {
   const std::string& path = options.path;
-  const bool is_gltf = absl::EndsWithIgnoreCase(path, ".gltf") ||
-                       absl::EndsWithIgnoreCase(path, ".glb");
+  const bool is_gltf = IsGltfPath(path);
   const bool is_obj = absl::EndsWithIgnoreCase(path, ".obj");
   const bool is_json = absl::EndsWithIgnoreCase(path, ".json");
   const struct {

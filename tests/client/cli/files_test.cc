@@ -115,7 +115,7 @@ TEST_F(FilesTest, ABadSkeletonIsToldByItsField) {
 TEST_F(FilesTest, OtherKindsOfFilesAreRefused) {
   const auto file = ReadSkeletonFile("model.fbx", std::nullopt);
   EXPECT_EQ(std::string(file.status().message()),
-            "\"model.fbx\": want a .bvh, .asf, .urdf, .gltf, .glb or "
+            "\"model.fbx\": want a .bvh, .asf, .urdf, .gltf, .glb, .vrm or "
             ".json file");
 }
 
