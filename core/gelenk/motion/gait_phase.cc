@@ -51,6 +51,10 @@ absl::StatusOr<Legs> FindLegs(const Skeleton& skeleton) {
   // Some rigs begin both legs with a joint in the place of the pelvis.
   const std::vector<int> left = ChainBelow(skeleton, body.left_foot, pelvis);
   const std::vector<int> right = ChainBelow(skeleton, body.right_foot, pelvis);
+  if (left.empty() || right.empty()) {
+    return absl::FailedPreconditionError(
+        "skeleton: one foot hangs from the other: these are no two legs");
+  }
   WorldTransforms frames;
   ForwardKinematics(skeleton, skeleton.rest_positions(), frames);
   const size_t last = std::min(left.size(), right.size()) - 1;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "gelenk/formats/bvh_clip.h"
 #include "gelenk/formats/bvh_reader.h"
@@ -13,6 +14,7 @@
 #include "gelenk/motion/clip_frames.h"
 #include "gelenk/motion/layer_stack.h"
 #include "gelenk/motion/mirror.h"
+#include "gelenk/skeleton/skeleton_builder.h"
 #include "tests/testing/random_skeleton.h"
 #include "tests/testing/status_matchers.h"
 #include "tests/testing/walking_bvh.h"
@@ -59,6 +61,27 @@ TEST(FindGaitPhaseTest, LegsMayBeginInThePlaceOfThePelvis) {
       WithJointOfNoLength(WalkingBvh(200), "LeftUpLeg"), "RightUpLeg")));
   ASSERT_TRUE(got.ok()) << got.status();
   EXPECT_EQ(got->strikes_s, want.strikes_s);
+}
+
+TEST(FindGaitPhaseTest, OneFootMayNotHangFromTheOther) {
+  SkeletonBuilder builder;
+  std::string parent;
+  for (const char* id : {"Hips", "LeftUpLeg", "LeftLeg", "LeftFoot",
+                         "RightUpLeg", "RightLeg", "RightFoot"}) {
+    Joint joint;
+    joint.id = id;
+    joint.parent_id = parent;
+    joint.type = parent.empty() ? JointType::kFree : JointType::kSpherical;
+    joint.parent_from_joint.translation.y() = parent.empty() ? 0 : -0.4;
+    parent = joint.id;
+    builder.AddJoint(std::move(joint));
+  }
+  const auto skeleton = builder.Build().value();
+  const Eigen::MatrixXd frames = skeleton->rest_positions().replicate(1, 30);
+  const auto clip = ClipFromFrames(skeleton, frames, {.frame_time_s = 0.02});
+  ASSERT_TRUE(clip.ok()) << clip.status();
+  EXPECT_EQ(FindGaitPhase(*clip).status().code(),
+            absl::StatusCode::kFailedPrecondition);
 }
 
 // The walk twice as fast, half a cycle later, turned and moved aside.
