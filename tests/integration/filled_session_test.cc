@@ -483,6 +483,15 @@ TEST_F(FilledSessionTest, BadIntervalsAreNamed) {
             .status(),
         Fails(absl::StatusCode::kInvalidArgument, words));
   };
+  for (const int ms : {2, 10000}) {
+    StreamConditioning conditioning;
+    conditioning.mutable_fill_interval()->set_seconds(ms / 1000);
+    conditioning.mutable_fill_interval()->set_nanos(ms % 1000 * 1000000);
+    EXPECT_EQ(
+        Call(&v1::SessionService::Stub::CreateSession, Follower(conditioning))
+            .status(),
+        absl::OkStatus());
+  }
   refuse(0, 0, "session.conditioning.fill_interval: want more than 0");
   refuse(0, 1000, "session.conditioning.fill_interval: want 0.002 to 10 s");
   refuse(-1, 0, "session.conditioning.fill_interval: want 0.002 to 10 s");

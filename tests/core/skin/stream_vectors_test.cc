@@ -24,6 +24,7 @@
 #include "gelenk/skin/mesh_around.h"
 #include "gelenk/skin/vertex_stream.h"
 #include "tests/core/skin/skin_chains.h"
+#include "tests/testing/status_matchers.h"
 
 namespace gelenk {
 namespace {
@@ -310,6 +311,56 @@ TEST(StreamVectorsTest, ControlPlanesDecodeToWhatIsWritten) {
           << v;
     }
   }
+}
+
+TEST(StreamVectorsTest, LayoutsOfControlPlanesAreChecked) {
+  const ControlPlaneLayout good =
+      LayoutFrom(ReadVectors()["controlPlanes"]["layout"]);
+  const auto refuses = [&good](const auto& change, const char* words) {
+    ControlPlaneLayout bad = good;
+    change(bad);
+    EXPECT_THAT(ControlPlaneMesh::Create(std::move(bad)).status(),
+                testing::Fails(absl::StatusCode::kInvalidArgument, words));
+  };
+  using Layout = ControlPlaneLayout;
+  refuses([](Layout& l) { l.coordinates.pop_back(); }, "coordinates: want");
+  refuses([](Layout& l) { l.normal_components.pop_back(); },
+          "normal_components: want");
+  refuses([](Layout& l) { l.part_volumes.pop_back(); }, "part_volumes: want");
+  refuses([](Layout& l) { l.part_coordinates.pop_back(); },
+          "part_coordinates: want");
+  refuses([](Layout& l) { l.part_shares.pop_back(); }, "part_shares: want");
+  refuses([](Layout& l) { l.part_slopes.pop_back(); }, "part_slopes: want");
+  refuses([](Layout& l) { l.part_share_slopes.pop_back(); },
+          "part_share_slopes: want");
+  refuses([](Layout& l) { l.own_slopes.pop_back(); }, "own_slopes: want");
+  refuses([](Layout& l) { l.vertex_volumes[3] = 9999; },
+          "vertex_volumes[3]: want 0 to");
+  refuses([](Layout& l) { l.part_vertices[0] = -1; },
+          "part_vertices[0]: want 0 to");
+  refuses(
+      [](Layout& l) {
+        std::swap(l.part_vertices.front(), l.part_vertices.back());
+      },
+      "part_vertices: want them rising");
+  refuses([](Layout& l) { l.links[2].parent = 2; }, "links[2].parent: want");
+  refuses([](Layout& l) { l.links[0].continuation = 999; },
+          "links[0].continuation: want");
+  refuses([](Layout& l) { l.links[1].length_m = NAN; },
+          "links[1].length_m: want more than 0");
+  refuses([](Layout& l) { l.links[1].end_spacing_m = 0; },
+          "links[1].end_spacing_m: want more than 0");
+}
+
+TEST(StreamVectorsTest, PlanesOfAnotherSkinAreRefused) {
+  const json vectors = ReadVectors()["controlPlanes"];
+  auto mesh = *ControlPlaneMesh::Create(LayoutFrom(vectors["layout"]));
+  const std::string bytes = BytesOf(vectors["frames"][0]["bytes"]);
+  std::vector<Vector3d> positions, normals;
+  for (size_t size = 0; size < bytes.size(); size += 7) {
+    EXPECT_FALSE(mesh.Deform(bytes.substr(0, size), positions, normals).ok());
+  }
+  EXPECT_TRUE(mesh.Deform(bytes, positions, normals).ok());
 }
 
 }  // namespace
