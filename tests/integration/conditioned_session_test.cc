@@ -9,7 +9,7 @@
 
 #include "gelenk/motion/frame_conditioner.h"
 #include "gelenk/retarget/live_retargeter.h"
-#include "tests/integration/service_test.h"
+#include "tests/integration/follower_test.h"
 #include "tests/testing/followed_body.h"
 #include "tests/testing/status_matchers.h"
 
@@ -18,7 +18,6 @@ namespace {
 
 using testing::ArmSessionRequest;
 using testing::AttachRequest;
-using testing::BodyClip;
 using testing::Fails;
 using ::testing::HasSubstr;
 using testing::kReachGoal;
@@ -43,30 +42,8 @@ void SetTime(int number, v1::TargetFrame& frame) {
   frame.mutable_capture_time()->set_nanos(number * kFrameMs % 1000 * 1000000);
 }
 
-class ConditionedSessionTest : public ServiceTest {
+class ConditionedSessionTest : public FollowerTest {
  protected:
-  static void SetUpTestSuite() {
-    StartServer({});
-    for (const auto& request :
-         {testing::WalkerRequest(Clip()), testing::HeroRequest()}) {
-      ASSERT_EQ(
-          Call(&v1::KinematicsService::Stub::CreateSkeleton, request).status(),
-          absl::OkStatus());
-    }
-  }
-
-  static const BodyClip& Clip() {
-    static const auto* const kClip = new BodyClip(testing::WalkClip(kFrames));
-    return *kClip;
-  }
-
-  static v1::CreateSessionRequest Follower(
-      const StreamConditioning& conditioning) {
-    v1::CreateSessionRequest request = testing::FollowerRequest(Clip());
-    *request.mutable_session()->mutable_conditioning() = conditioning;
-    return request;
-  }
-
   static v1::CreateSessionRequest Arm(const StreamConditioning& conditioning) {
     v1::CreateSessionRequest request = ArmSessionRequest();
     *request.mutable_session()->mutable_conditioning() = conditioning;

@@ -10,7 +10,7 @@
 
 #include "gelenk/client/connection.h"
 #include "gelenk/client/session_stream.h"
-#include "tests/integration/service_test.h"
+#include "tests/integration/follower_test.h"
 #include "tests/testing/followed_body.h"
 #include "tests/testing/status_matchers.h"
 
@@ -19,7 +19,6 @@ namespace {
 
 using testing::ArmSessionRequest;
 using testing::AttachRequest;
-using testing::BodyClip;
 using testing::Fails;
 using ::testing::HasSubstr;
 using testing::SolveStream;
@@ -57,23 +56,8 @@ void SetTime(int ms, v1::TargetFrame& frame) {
   frame.mutable_capture_time()->set_nanos(ms % 1000 * 1000000);
 }
 
-class FilledSessionTest : public ServiceTest {
+class FilledSessionTest : public FollowerTest {
  protected:
-  static void SetUpTestSuite() {
-    StartServer({});
-    for (const auto& request :
-         {testing::WalkerRequest(Clip()), testing::HeroRequest()}) {
-      ASSERT_EQ(
-          Call(&v1::KinematicsService::Stub::CreateSkeleton, request).status(),
-          absl::OkStatus());
-    }
-  }
-
-  static const BodyClip& Clip() {
-    static const auto* const kClip = new BodyClip(testing::WalkClip(60));
-    return *kClip;
-  }
-
   static StreamConditioning Filling(StreamConditioning::LatePolicy policy,
                                     int interval_ms = kFrameMs) {
     StreamConditioning conditioning;
@@ -82,13 +66,6 @@ class FilledSessionTest : public ServiceTest {
     conditioning.mutable_extrapolation_limit()->set_nanos(60'000'000);
     conditioning.mutable_ease_duration()->set_nanos(100'000'000);
     return conditioning;
-  }
-
-  static v1::CreateSessionRequest Follower(
-      const StreamConditioning& conditioning) {
-    v1::CreateSessionRequest request = testing::FollowerRequest(Clip());
-    *request.mutable_session()->mutable_conditioning() = conditioning;
-    return request;
   }
 
   static v1::TargetFrame ClipFrame(int number) {

@@ -10,7 +10,7 @@
 
 #include "gelenk/client/session_stream.h"
 #include "gelenk/retarget/live_retargeter.h"
-#include "tests/integration/service_test.h"
+#include "tests/integration/follower_test.h"
 #include "tests/testing/followed_body.h"
 #include "tests/testing/status_matchers.h"
 
@@ -47,22 +47,8 @@ Positions PositionsOf(const Eigen::VectorXd& positions) {
 
 using MakeFrame = std::function<v1::TargetFrame(int number)>;
 
-class RetargetingSessionTest : public ServiceTest {
+class RetargetingSessionTest : public FollowerTest {
  protected:
-  static void SetUpTestSuite() {
-    StartServer({});
-    for (const auto& request :
-         {testing::WalkerRequest(Clip()), testing::HeroRequest()}) {
-      ASSERT_EQ(
-          Call(&v1::KinematicsService::Stub::CreateSkeleton, request).status(),
-          absl::OkStatus());
-    }
-  }
-
-  static const BodyClip& Clip() {
-    static const auto* const kClip = new BodyClip(testing::WalkClip(kFrames));
-    return *kClip;
-  }
   static const Actor& Person() {
     static const auto* const kActor = new Actor(testing::WalkingActor(kFrames));
     return *kActor;
